@@ -106,8 +106,8 @@ const programs = {
 
 /** The tools that are scripts of their own. */
 export const scriptTools = [
-  ...['train', 'train:gait', 'evaluate', 'report', 'goldens', 'renew', 'reliability', 'pictures'],
-  ...['bench', 'avatars:fetch', 'avatars:try'],
+  ...['train', 'train:gait', 'evaluate', 'report', 'paper', 'goldens', 'renew', 'reliability'],
+  ...['pictures', 'bench', 'avatars:fetch', 'avatars:try'],
 ];
 
 /** Returns the path of the script of a tool. */

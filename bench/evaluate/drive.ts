@@ -16,8 +16,15 @@ import type { RecordedFrame } from './recordings';
 export const measuredMethods = ['ik', 'paper', 'learned'] as const satisfies readonly EstimatorName[];
 export type MeasuredMethod = (typeof measuredMethods)[number];
 
-/** What is drawn of one frame, floor frame [m]: every joint by name, and what the network alone said. */
+/** The methods that can be driven: also the paper's method as published, which no table of all methods has. */
+export type DrivenMethod = MeasuredMethod | 'paper-published';
+
+/**
+ * What is drawn of one frame, floor frame [m]: every joint by name, what the network alone said, and the
+ * processor's time for estimate and network [ms], which other programs do not change.
+ */
 export interface DrawnFrame {
+  readonly cpuMilliseconds: number;
   readonly joints: Readonly<Record<string, Vec3>>;
   readonly raw: JointPositions | null;
 }
@@ -35,28 +42,33 @@ export interface Driver {
  * where it reports a fault or draws no body.
  */
 export function createDriver(
-  name: MeasuredMethod,
+  name: DrivenMethod,
   calibration: Calibration,
   regressor: PoseRegressor | null,
   frameByFrame = false,
 ): Driver {
-  const options = { frameByFrame };
+  const published = name === 'paper-published';
+  const options = published ? { paperOrientations: true } : { frameByFrame };
   const estimator =
-    name === 'ik' ? createIk(calibration, options) : createWithNetwork(name, calibration, regressor, options);
+    name === 'ik'
+      ? createIk(calibration, options)
+      : createWithNetwork(published ? 'paper' : name, calibration, regressor, options);
   const skeleton = skeletonFromCalibration(calibration);
   return {
     async draw(frame) {
       // The network is asked when the picture is drawn and answers from a worker: what a frame draws was computed from
       // the one before.
+      const start = process.cpuUsage();
       const { pose, request } = estimator.update(frame);
       await request?.ask();
+      const { user, system } = process.cpuUsage(start);
       if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);
       if (!pose.body) throw new Error(`${name} drew no body`);
       const joints: Record<string, Vec3> = {};
       for (const [joint, { position }] of Object.entries(forwardKinematics(skeleton, pose.body)))
         joints[joint] = position;
       const raw = estimator.source.network?.answer(estimator.state.solved);
-      return { joints, raw: raw ? copyJoints(raw) : null };
+      return { cpuMilliseconds: (user + system) / 1000, joints, raw: raw ? copyJoints(raw) : null };
     },
     reset: () => estimator.reset(),
   };
@@ -64,13 +76,13 @@ export function createDriver(
 
 /** Drives the shipping path over one clip, frame by frame as the page would. */
 export async function drive(
-  name: MeasuredMethod,
+  name: DrivenMethod,
   calibration: Calibration,
   regressor: PoseRegressor | null,
   frames: readonly RecordedFrame[],
-): Promise<MeasuredFrame[]> {
+): Promise<(MeasuredFrame & DrawnFrame)[]> {
   const driver = createDriver(name, calibration, regressor);
-  const result: MeasuredFrame[] = [];
+  const result: (MeasuredFrame & DrawnFrame)[] = [];
   for (const { frame, truth } of frames) {
     const { leftHand, rightHand } = frame;
     const wrists = { left: leftHand?.position ?? null, right: rightHand?.position ?? null };

@@ -1,7 +1,7 @@
 import { recordOf } from 'threepoint/core';
 import { add, cross, distance, dot, length, normalise, scale, subtract, up, type Vec3, vec3 } from 'threepoint/math';
 import { mean } from '../../src/threepoint/core/math/statistics';
-import { type MeasuredMethod, measuredMethods } from './drive';
+import { type DrivenMethod, type MeasuredMethod, measuredMethods } from './drive';
 import { type MeasuredFrame, rounded } from './measures';
 import { type TruthJoint, truthJoints } from './recordings';
 
@@ -69,7 +69,7 @@ export interface PictureOfMotion {
   readonly clip: string;
   readonly seconds: number;
   readonly unlikeness: number;
-  readonly bodies: Readonly<Record<MeasuredMethod | 'truth', Points>>;
+  readonly bodies: Readonly<Record<'truth', Points> & Partial<Record<DrivenMethod, Points>>>;
 }
 
 /** Error of the right shoulder [cm] over a clip: the one whose error is the median of all. */
@@ -93,6 +93,9 @@ export interface FigureCollection {
 export const emptyCollection = (): FigureCollection => ({ traces: [], poses: new Map() });
 
 type Driven = Readonly<Record<MeasuredMethod, readonly MeasuredFrame[]>>;
+type Pictured = Readonly<
+  Record<'ik', readonly MeasuredFrame[]> & Partial<Record<DrivenMethod, readonly MeasuredFrame[]>>
+>;
 
 export function addFigures(collection: FigureCollection, clip: string, driven: Driven, rateHz: number): void {
   const errors = (name: MeasuredMethod): number[] =>
@@ -103,8 +106,13 @@ export function addFigures(collection: FigureCollection, clip: string, driven: D
     clip,
     errors: recordOf(measuredMethods, errors),
   });
+  addPictures(collection.poses, clip, driven, rateHz);
+}
+
+/** Replaces each picture for which this clip has a pose more like its motion; `driven`: IK and any other methods. */
+export function addPictures(pictures: FigureCollection['poses'], clip: string, driven: Pictured, rateHz: number): void {
   for (const motion of motions) {
-    let least = collection.poses.get(motion)?.unlikeness ?? Number.POSITIVE_INFINITY;
+    let least = pictures.get(motion)?.unlikeness ?? Number.POSITIVE_INFINITY;
     let best: number | null = null;
     for (const [row, { truth }] of driven.ik.entries()) {
       const now = unlikeness(motion, truth);
@@ -115,7 +123,7 @@ export function addFigures(collection: FigureCollection, clip: string, driven: D
     if (best === null) continue;
     const seconds = rounded(best / rateHz, 2);
     const bodies = bodiesAt(driven, best);
-    collection.poses.set(motion, { motion, clip, seconds, unlikeness: rounded(least, 3), bodies });
+    pictures.set(motion, { motion, clip, seconds, unlikeness: rounded(least, 3), bodies });
   }
 }
 
@@ -126,7 +134,7 @@ function pointOf(joints: Readonly<Record<string, Vec3>>, name: string): Vec3 {
 }
 
 /** The joints of a frame as they were and as each method gives them, in the axes of `PictureOfMotion`. */
-function bodiesAt(driven: Driven, row: number): PictureOfMotion['bodies'] {
+function bodiesAt(driven: Pictured, row: number): PictureOfMotion['bodies'] {
   const { truth } = driven.ik[row] as MeasuredFrame;
   const { right, forward } = shoulderFrame(truth);
   const seen = (joints: Readonly<Record<string, Vec3>>): Points =>
@@ -136,8 +144,8 @@ function bodiesAt(driven: Driven, row: number): PictureOfMotion['bodies'] {
     }) as unknown as Points;
   return {
     truth: seen(truth),
-    ...Object.fromEntries(measuredMethods.map((name) => [name, seen((driven[name][row] as MeasuredFrame).joints)])),
-  } as PictureOfMotion['bodies'];
+    ...Object.fromEntries(Object.entries(driven).map(([name, frames]) => [name, seen(frames[row]!.joints)])),
+  };
 }
 
 export function figuresOf({ traces, poses }: FigureCollection, rateHz: number): Figures {

@@ -18,12 +18,16 @@ def folder_of(folder: Path, *people: str) -> Path:
 
 def test_tables_are_of_the_varied_people_outside_the_lockbox_where_they_are_all_there(tmp_path: Path) -> None:
     there = report_people.main(folder_of(tmp_path, *VARIED, "132", "901", "903"))
-    assert there == {"tables": list(trainable(VARIED)), "elsewhere": ["901", "903"]}
+    assert there == {"tables": list(trainable(VARIED)), "elsewhere": ["901", "903"], "paper": ["132"]}
 
 
 def test_tables_are_of_everyone_outside_the_lockbox_where_one_of_them_is_missing(tmp_path: Path) -> None:
     there = report_people.main(folder_of(tmp_path, *LOCKBOX, "005", "anna"))
-    assert there == {"tables": ["005", "anna"], "elsewhere": []}
+    assert there == {"tables": ["005", "anna"], "elsewhere": [], "paper": ["anna"]}
+
+
+def test_the_paper_s_network_is_measured_on_people_it_knows_where_there_are_no_others(tmp_path: Path) -> None:
+    assert report_people.main(folder_of(tmp_path, "005", "135", "901"))["paper"] == ["005"]
 
 
 def test_the_program_answers_in_json_or_says_what_is_wrong(tmp_path: Path) -> None:

@@ -19,7 +19,9 @@ Json = dict[str, Any]
 # The palette of Okabe and Ito, which is safe for colour-blind readers; marks differ as well.
 COLOURS = {"ik": "#D55E00", "paper": "#009E73", "learned": "#0072B2"}
 MARKS = {"ik": "s", "paper": "^", "learned": "o"}
-NAMES = {"ik": "IK", "paper": "paper", "learned": "learned"}
+# The colours of the paper's figure 7 for docs/paper.md, where the network is blue and IK red.
+PAPER_COLOURS = {"ik": "#D55E00", "paper": "#0072B2", "paper-published": "#56B4E9"}
+NAMES = {"ik": "IK", "paper": "paper", "learned": "learned", "paper-published": "paper, 3.5"}
 TRUTH, FAINT = "#222222", "#999999"
 WIDTH = 8.6
 
@@ -265,9 +267,22 @@ def _seen_from(point: list[float], turn: float) -> tuple[float, float]:
     return -(right * np.cos(turn) + back * np.sin(turn)), height
 
 
-def poses(pictures: list[Json], folder: Path) -> None:
+def last_epoch(figures: Json, folder: Path) -> None:
+    """The paper's figures 4 and 5: the loss of each batch and the error of the right shoulder in the last epoch."""
+    figure, panels = panels_of(1, 2, 3.0)
+    losses, heights = figures["loss"], figures["rightShoulderHeightCm"]
+    panels[0].plot(np.arange(len(losses)), losses, color=COLOURS["learned"], linewidth=0.9)
+    panels[0].set(xlabel="batch of the last epoch", ylabel="MSE, standardised", ylim=(0, None))
+    panels[0].set_title("Loss of a batch")
+    panels[1].plot(np.linspace(0, len(losses), len(heights)), heights, color=COLOURS["learned"])
+    panels[1].set(xlabel="batch of the last epoch", ylabel="MAE [cm]", ylim=(0, None))
+    panels[1].set_title("Height of the right shoulder, test frames")
+    save(figure, folder, "last-epoch")
+
+
+def poses(pictures: list[Json], folder: Path, colours: dict[str, str] = COLOURS) -> None:
     """The paper's figure 7: six motions, the truth and what each method makes of it."""
-    columns = ["truth", *COLOURS]
+    columns = ["truth", *colours]
     half_width, head_height, head_radius = 0.66, 0.08, 0.095
 
     def turn_of(picture: Json) -> float:
@@ -300,7 +315,7 @@ def poses(pictures: list[Json], folder: Path) -> None:
             for of in dict.fromkeys(("truth", method)):
                 body = picture["bodies"][of]
                 faint = of != method
-                colour = TRUTH if method == "truth" else "#b8b8b8" if faint else COLOURS[method]
+                colour = TRUTH if method == "truth" else "#b8b8b8" if faint else colours[method]
                 for bone in BONES:
                     x, y = np.transpose([_seen_from(body[joint], turn) for joint in bone])
                     caps = {"solid_capstyle": "round", "solid_joinstyle": "round"}
@@ -316,7 +331,7 @@ def poses(pictures: list[Json], folder: Path) -> None:
             for spine in axes.spines.values():
                 spine.set_visible(False)
             if row == 0:
-                colour = TRUTH if method == "truth" else COLOURS[method]
+                colour = TRUTH if method == "truth" else colours[method]
                 axes.set_title(NAMES.get(method, "truth"), color=colour, loc="center", fontsize=11)
             if column == 0:
                 axes.set_ylabel(picture["motion"].replace(" hand ", " hand\n"), fontsize=9.5, fontweight="bold")

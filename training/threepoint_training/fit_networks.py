@@ -8,7 +8,6 @@ import numpy as np
 import torch
 
 from . import export, fitted_kinematics, train_learned, train_paper
-from .model import PaperNetwork
 from .paper_features import paper_features
 from .prepared_corpus import TRACKED_COLUMNS, PreparedCorpus
 from .splits import counted, trainable, trained_on
@@ -38,7 +37,7 @@ def paper(
     frames: train_paper.PaperFrames,
     label: str,
     chosen: np.ndarray | None = None,
-    watch: Callable[[float, PaperNetwork], None] = lambda *_: None,
+    watch: Callable[[float, train_paper.AnyPaperNetwork], None] = lambda *_: None,
 ) -> torch.nn.Module:
     """The paper's network trained on the chosen frames; None: on all."""
     config = run.config.paper
@@ -82,18 +81,18 @@ def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn
         )
 
 
-def _frame_random_split(run: TrainingRun, count: int) -> tuple[np.ndarray, np.ndarray]:
+def frame_random_split(seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """The paper's protocol: frames to train on, and 20 % of all frames, drawn at random, to test on; their neighbours
     are trained on.
     """
-    test = np.sort(np.random.default_rng(run.config.seed).choice(count, count // 5, replace=False))
+    test = np.sort(np.random.default_rng(seed).choice(count, count // 5, replace=False))
     return np.setdiff1d(np.arange(count), test), test
 
 
 def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
     """Errors [F, 6] in cm of the paper's network on the test frames of the paper's protocol."""
     frames = paper_frames(run, trainable(tuple(run.corpus.people)), "frame-random")
-    chosen, test = _frame_random_split(run, len(frames.inputs))
+    chosen, test = frame_random_split(run.config.seed, len(frames.inputs))
     network = paper(run, frames, "frame-random", chosen)
     return train_paper.errors_cm(network, frames, test)
 
@@ -102,7 +101,7 @@ def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
     """Errors [F, 6] in cm of our network's raw joints on the test frames of the paper's protocol."""
     people = _people_of(run, "learned", trainable(tuple(run.corpus.people)), "frame-random")
     frames = train_learned.held_out(run.corpus, people, run.config.learned.window_seconds)
-    chosen, test = _frame_random_split(run, len(frames.inputs))
+    chosen, test = frame_random_split(run.config.seed, len(frames.inputs))
     config = run.config.learned_frame_random
     with run.report.task("learned frame-random", config.steps) as advance:
         network = train_learned.train_frame_random(

@@ -17,6 +17,7 @@ from .features import frame_features
 from .generated_motion import generate_clip
 from .golden_mocap import mocap_vectors
 from .paper_features import paper_features
+from .paper_orientations import DRAWN_JOINTS, paper_body
 from .prepared_corpus import Person
 from .residual import network_input
 from .shared_constants import REPOSITORY
@@ -172,8 +173,8 @@ SITUATIONS: dict[str, tuple[Callable[[Array, Array, Body, np.random.Generator], 
 
 
 def fitted_vectors() -> list[dict[str, Any]]:
-    """People in three sizes, joints estimated about where IK has them, and where torso and arm fitting put those on the
-    skeleton.
+    """People in three sizes, joints estimated about where IK has them, where torso and arm fitting put those on the
+    skeleton, and the body that section 3.5 of the paper makes of them.
 
     `limited` says of each elbow whether the swivel limiter keeps it out of the trunk.
     """
@@ -202,6 +203,7 @@ def fitted_vectors() -> list[dict[str, Any]]:
                 _in_floor_frame(ik_joints + person.eye_height * shift @ axes, positions, rotations)
                 for shift in (corrections, fitted.numpy())
             )
+            published = paper_body(estimated, positions, rotations, body)
             frames += [
                 {
                     "situation": situation,
@@ -210,6 +212,7 @@ def fitted_vectors() -> list[dict[str, Any]]:
                     "estimated": estimated[i],
                     "fitted": placed[i],
                     "limited": limited[i].numpy(),
+                    "published": dict(zip(DRAWN_JOINTS, published[i], strict=True)),
                 }
                 for i in range(FRAMES)
             ]

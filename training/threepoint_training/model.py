@@ -1,5 +1,7 @@
 """The two networks. Normalisation lives inside both: SI units or ratios go in and come out."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import torch
 from torch import Tensor, nn
@@ -15,27 +17,38 @@ from .residual import OUTPUTS
 MOST_DEVIATIONS = 4.0
 
 
-class PaperNetwork(nn.Module):
-    """Section 3.3 of the paper: [N, 2, 3, 3] -> [N, 18].
-
-    Four 3×3 convolutions of 2^(4+layer) channels (32, 64, 128, 256), stride 1, zero padding, ReLU; dropout 0.3 after
-    the first convolution and the first fully connected layer. Its width, 512, is the one that gives the 1.58 million
-    parameters of a 6 MB file.
+@dataclass(frozen=True)
+class PaperShape:
+    """What section 3.3 of the paper leaves open: how many networks share the 18 outputs, the filters of the first
+    convolution, and the width of the first fully connected layer.
     """
 
-    def __init__(self) -> None:
+    networks: int = 1
+    first_filters: int = 32
+    width: int = 512
+
+
+class PaperNetwork(nn.Module):
+    """Section 3.3 of the paper: [N, 2, 3, 3] -> [N, 18], or this many of the outputs.
+
+    Four 3×3 convolutions, each with twice the filters of the one before (32 to 256 by default), stride 1, zero padding,
+    ReLU; dropout 0.3 after the first convolution and the first fully connected layer. Its default width, 512, gives
+    1.58 million parameters, a file of 6 MB.
+    """
+
+    def __init__(self, shape: PaperShape = PaperShape(), outputs: int = OUTPUTS) -> None:
         super().__init__()
-        channels = [2] + [2 ** (4 + layer) for layer in range(1, 5)]
+        channels = [2] + [shape.first_filters * 2**layer for layer in range(4)]
         self.convolutions = nn.ModuleList(
             nn.Conv2d(before, after, 3, padding=1) for before, after in zip(channels[:-1], channels[1:], strict=True)
         )
         self.dropout = nn.Dropout(0.3)
-        self.hidden = nn.Linear(channels[-1] * 9, 512)
-        self.output = nn.Linear(512, OUTPUTS)
+        self.hidden = nn.Linear(channels[-1] * 9, shape.width)
+        self.output = nn.Linear(shape.width, outputs)
         self.register_buffer("input_mean", torch.zeros(1, 2, 3, 3))
         self.register_buffer("input_scale", torch.ones(1, 2, 3, 3))
-        self.register_buffer("output_mean", torch.zeros(1, OUTPUTS))
-        self.register_buffer("output_scale", torch.ones(1, OUTPUTS))
+        self.register_buffer("output_mean", torch.zeros(1, outputs))
+        self.register_buffer("output_scale", torch.ones(1, outputs))
 
     def normalise(self, inputs: Tensor, targets: Tensor) -> None:
         """Takes mean and deviation from the training data."""
@@ -56,6 +69,37 @@ class PaperNetwork(nn.Module):
 
     def forward(self, inputs: Tensor) -> Tensor:
         return self.standardised(inputs) * self.output_scale + self.output_mean
+
+
+class RepeatedPaperNetwork(nn.Module):
+    """Several of the paper's networks, each for its part of the 18 outputs: “the model repeats regression steps for
+    each of the outputs being estimated”. The mean of their losses trains each as if it were alone.
+    """
+
+    def __init__(self, shape: PaperShape) -> None:
+        super().__init__()
+        self.outputs = OUTPUTS // shape.networks
+        self.networks = nn.ModuleList(PaperNetwork(shape, self.outputs) for _ in range(shape.networks))
+
+    @property
+    def output_mean(self) -> Tensor:
+        return torch.cat([network.output_mean for network in self.networks], dim=1)
+
+    @property
+    def output_scale(self) -> Tensor:
+        return torch.cat([network.output_scale for network in self.networks], dim=1)
+
+    def normalise(self, inputs: Tensor, targets: Tensor) -> None:
+        """Takes mean and deviation from the training data."""
+        for network, own in zip(self.networks, targets.split(self.outputs, dim=1), strict=True):
+            network.normalise(inputs, own)
+
+    def standardised(self, inputs: Tensor) -> Tensor:
+        """The output in standard deviations, which the loss compares."""
+        return torch.cat([network.standardised(inputs) for network in self.networks], dim=1)
+
+    def forward(self, inputs: Tensor) -> Tensor:
+        return torch.cat([network(inputs) for network in self.networks], dim=1)
 
 
 class CorrectionNetwork(nn.Module):

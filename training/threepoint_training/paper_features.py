@@ -24,3 +24,17 @@ def paper_features(positions: Array, rotations: Array) -> Array:
     """
     local = positions - floor_under_head(positions)
     return np.stack([np.swapaxes(local, 1, 2), np.swapaxes(euler_yxz(rotations), 1, 2)], axis=1)
+
+
+def forearm_rotations(tracked: Array, truth: Array) -> Array:
+    """The rotations [F, 2, 4] of both forearms by the paper's section 3.5, from tracked points [F, 3, 3] and the six
+    joints [F, 6, 3]: y from elbow to wrist, x the normal of the plane of shoulder, elbow and wrist, z = x × y.
+    """
+    elbows, shoulders, wrists = truth[:, :2], truth[:, 2:4], tracked[:, 1:]
+    y = _unit(wrists - elbows)
+    x = _unit(np.cross(shoulders - elbows, y))
+    return quaternion.from_matrix(np.stack([x, y, np.cross(x, y)], axis=-1))
+
+
+def _unit(v: Array) -> Array:
+    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)

@@ -54,17 +54,22 @@ export function createWithNetwork(
  * that of `learned` falls back on IK. Throws a RangeError for an unknown name, or for measures [m] that no person has.
  * `pinning` of threepoint/trackers draws the trackers of frames.
  *
+ * `paper-published` is `paper`, with its regressor and name, but with the orientations of section 3.5 of the paper: no
+ * torso and arm fitting, no filters, no trackers beyond head and hands. It serves comparisons; no list has its name.
+ *
  * @example
  * const estimator = createEstimator('learned', calibration, await loadLearned());
  */
 export function createEstimator(
-  name: EstimatorName,
+  name: EstimatorName | 'paper-published',
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
   options: PipelineOptions = {},
 ): PoseEstimator {
   assertCalibration(calibration);
   options.pinning?.assertOffsets(calibration);
+  if (name === 'paper-published')
+    return createWithNetwork('paper', calibration, regressor, { ...options, paperOrientations: true });
   if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor, options);
   if (name === 'device') {
     const otherwise = regressor ? createResidual(calibration, regressor) : ikAlone;

@@ -10,11 +10,12 @@ import type { DeviceBody } from '../tracking/device-body';
 import { floorFromHeading } from '../tracking/heading';
 import { assertPinning, type TrackingFrame } from '../tracking/tracking-frame';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './arms/fit-arms';
-import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
+import { type CompletedFrame, completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './ik/solve-ik';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
+import { makePaperOrientations, type PaperOrientations, paperOrientations } from './methods/paper-orientations';
 import { estimateHandTilts, makeHandTiltsState, resetHandTilts } from './online-calibration/estimate-hand-tilts';
 import {
   estimateHeadsetRise,
@@ -86,6 +87,10 @@ interface OwnedPose {
 export interface PipelineOptions {
   /** Whether filters and speed limits are left out, for benches that measure their cost. */
   readonly frameByFrame?: boolean;
+  /**
+   * Whether the body has the orientations of section 3.5 of the paper instead of torso and arm fitting, frame by frame.
+   */
+  readonly paperOrientations?: boolean;
   /** Draws the trackers of frames; absent: frames must have none. */
   readonly pinning?: Pinning | undefined;
 }
@@ -108,11 +113,14 @@ export class Pipeline implements PoseEstimator {
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
   readonly #frameByFrame: boolean;
+  /** The body by section 3.5 of the paper; null: by torso and arm fitting. */
+  readonly #orientations: PaperOrientations | null;
   readonly #pins: Pins | undefined;
 
   constructor(name: EstimatorName, calibration: Calibration, source: JointSource, options: PipelineOptions = {}) {
     this.name = name;
-    this.#frameByFrame = options.frameByFrame ?? false;
+    this.#orientations = options.paperOrientations ? makePaperOrientations() : null;
+    this.#frameByFrame = options.frameByFrame ?? this.#orientations !== null;
     this.#pins = options.pinning?.create(calibration);
     this.source = source;
     this.state = makeEstimatorState(calibration);
@@ -173,22 +181,33 @@ export class Pipeline implements PoseEstimator {
     // An underestimated arm length is indistinguishable from a raised headset.
     if (body.spanMeasured) estimateHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, step, state.joints);
-    const joints = limitJoints(state.limited, state.joints, completed, step);
-    const torso = fitTorso(state.torso, joints, completed, body.torso, step);
-    const feet = this.#pins?.apply(torso, frame.trackers, completed, body.torso, step);
-    const armsInput = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
-    const arms = fitArms(state.arms, armsInput, step);
-
     this.#estimate.request = this.source.network?.wantsFrames ? this.#request : null;
     const { pose } = this.#estimate;
     pose.head = head;
     pose.leftHand = frame.leftHand;
     pose.rightHand = frame.rightHand;
     pose.fingers = frame.fingers ?? unknownFingers;
-    pose.feet = feet;
+    if (this.#orientations) {
+      const { hips, trunk, clavicles, arms } = this.#orientations;
+      paperOrientations(state.joints, completed, body.torso, body.arm, this.#orientations);
+      copyVec3(hips, pose.body.hipsPosition);
+      writeLocalRotations(trunk, head.orientation, clavicles, arms, pose.body.localRotations);
+    } else this.#fit(frame, head, completed, step);
+    return this.#estimate;
+  }
+
+  /** Writes the body by limits of speed, torso and arm fitting (stages 4 and 5). */
+  #fit(frame: TrackingFrame, head: TrackedPose, completed: CompletedFrame, step: number): void {
+    const { state } = this;
+    const body = this.#body;
+    const { pose } = this.#estimate;
+    const joints = limitJoints(state.limited, state.joints, completed, step);
+    const torso = fitTorso(state.torso, joints, completed, body.torso, step);
+    pose.feet = this.#pins?.apply(torso, frame.trackers, completed, body.torso, step);
+    const armsInput = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
+    const arms = fitArms(state.arms, armsInput, step);
     copyVec3(torso.hips, pose.body.hipsPosition);
     writeLocalRotations(torso.rotations, head.orientation, torso.clavicles, arms, pose.body.localRotations);
-    return this.#estimate;
   }
 
   /**

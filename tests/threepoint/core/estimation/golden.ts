@@ -45,6 +45,8 @@ export interface GoldenFit {
     readonly fitted: readonly Numbers[];
     /** Whether the swivel limiter keeps the left and the right elbow out of the trunk. */
     readonly limited: readonly boolean[];
+    /** The drawn joints by section 3.5 of the paper. */
+    readonly published: Readonly<Record<string, Numbers>>;
   }[];
 }
 

@@ -60,7 +60,7 @@ const lowestHips = 0.09;
 
 /** The bones of the trunk, parents first. */
 export const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
-type TrunkRotations = Readonly<Record<(typeof trunkBones)[number], MutableQuat>>;
+export type TrunkRotations = Readonly<Record<(typeof trunkBones)[number], MutableQuat>>;
 export const makeTrunkRotations = (): TrunkRotations => recordOf(trunkBones, () => quat(0, 0, 0, 1));
 
 /** A trunk with fixed bone lengths under the head, floor frame. */

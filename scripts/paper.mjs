@@ -1,0 +1,69 @@
+// npm run tool -- paper --mocap DIR [--skeleton MAP.json] [--stages NAME,NAME]: reproduces what the paper reports
+// without participants: trains the readings of its network stage by stage, measures the page's code path and the time
+// of the method, and writes the tables and figures of docs/paper.md. A finished stage is not run again.
+import { createHash } from 'node:crypto';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { passedOn, readOptions } from './command-line.mjs';
+import { ensureInstalled } from './installation.mjs';
+import { prepareRecordings, runTraining } from './python-environment.mjs';
+import { main, root, runProgram, SetupError } from './run-command.mjs';
+
+const usage =
+  'npm run tool -- paper --mocap DIR [--skeleton MAP.json] [--stages NAME,NAME]\n' +
+  'DIR holds .asf and .amc or .bvh files. --stages names the trainings to run (default: all); docs/paper.md has them.';
+const models = join(root, 'public/models');
+const stages = join(root, '.cache/paper');
+
+function options() {
+  return readOptions('paper', usage, { texts: ['stages'], paths: ['mocap', 'skeleton'] }, ({ mocap }) => {
+    if (!mocap) throw new Error('--mocap is needed');
+  });
+}
+
+/** Measures the page's code path on people that its paper network was not trained on; resolves to an exit code. */
+async function measurePath(given, file) {
+  const { code, output } = await runTraining('threepoint_training.report_people', passedOn(given, ['mocap']), {
+    capture: true,
+  });
+  if (code !== 0) throw new SetupError(`paper: ${output.trim()}\n${usage}`);
+  const people = JSON.parse(output).paper.join(',');
+  if (people === '') throw new SetupError(`paper: ${given.mocap} has no one outside the lockbox.`);
+  const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
+  try {
+    const prepared = await prepareRecordings({ ...given, people }, recordings);
+    if (prepared !== 0) return prepared;
+    // A run that ends half-way leaves no file that looks finished.
+    const json = `${file}.unfinished`;
+    const measured = await runProgram('bench/evaluate/paper.ts', [JSON.stringify({ recordings, models, json })]);
+    if (measured === 0) renameSync(json, file);
+    return measured;
+  } finally {
+    rmSync(recordings, { recursive: true, force: true });
+  }
+}
+
+await main(async () => {
+  const given = options();
+  await ensureInstalled();
+  mkdirSync(stages, { recursive: true });
+  const training = { extras: ['train'] };
+  const trained = await runTraining(
+    'threepoint_training.reproduce_paper',
+    passedOn(given, ['mocap', 'skeleton', 'stages']),
+    training,
+  );
+  if (trained.code !== 0) return trained.code;
+  const model = createHash('sha256')
+    .update(readFileSync(join(models, 'paper.onnx')))
+    .update(given.mocap);
+  const path = join(stages, `path-${model.digest('hex').slice(0, 16)}.json`);
+  if (existsSync(path)) console.log('path: finished before');
+  else {
+    const code = await measurePath(given, path);
+    if (code !== 0) return code;
+  }
+  const page = [...passedOn(given, ['mocap', 'skeleton']), '--path', path];
+  return (await runTraining('threepoint_training.paper_page', page, { extras: ['report'] })).code;
+});
