@@ -20,6 +20,6 @@ export async function keepFilm(page: Page, name: string, seconds: number, width:
   }
   const file = fileURLToPath(new URL(`../artifacts/screenshots/${name}.webp`, import.meta.url));
   await sharp(pictures, { join: { animated: true } })
-    .webp({ quality: 60, delay: pictures.map(() => 25 * framesPerPicture) })
+    .webp({ quality: 80, delay: pictures.map(() => 25 * framesPerPicture) })
     .toFile(file);
 }

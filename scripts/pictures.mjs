@@ -12,7 +12,7 @@ const pictures = {
   'readme-motion-in': 'ghost.jpg',
   'docs-study-experimenter': 'study-experimenter.jpg',
 };
-const films = ['film-mirror', 'film-archery', 'film-ball', 'film-phone'];
+const films = ['film-mirror', 'film-methods', 'film-archery', 'film-ball', 'film-phone'];
 
 await mainOf(import.meta.url, async () => {
   await ensureInstalled();

@@ -1,6 +1,8 @@
+import { actorFrame, defaultCalibration } from 'threepoint/core';
+import { exportMotion } from 'threepoint/motion';
 import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
-import { driveTime, holdAt, pass } from '../driven-time';
+import { driveTime, holdAt, pass, rest } from '../driven-time';
 import { keepFilm } from '../film';
 import { card, choose, errors } from '../mocap-card';
 import { expect, freshTest, keepPicture, open, test } from '../page-fixture';
@@ -68,6 +70,29 @@ test.describe('moving pictures', () => {
     await holdAt<ArcheryProbe>(page, { score: 5 });
     await keepFilm(page, 'film-archery', 5, 640);
   });
+});
+
+freshTest('inverse kinematics beside the learned network as a moving picture @nightly', async ({ page }) => {
+  freshTest.setTimeout(600_000);
+  await page.setViewportSize({ width: 960, height: 540 });
+  // The actor puts the hands on the hips, points, folds the arms and boxes.
+  const frames = Array.from({ length: 60 * 12 }, (_, row) => ({
+    ...actorFrame(5 + row / 60, defaultCalibration),
+    time: row / 60,
+  }));
+  const recording = { device: 'actor', rateHz: 60, calibration: defaultCalibration, frames };
+  const { parts } = await exportMotion(recording, { format: 'bvh', estimator: 'ik' });
+  await page.route('**/actor.bvh', (route) => route.fulfill({ body: parts.join('') }));
+  await open(page, 'mocap=actor.bvh&estimator=learned&beside=ik&truth=off&quality=high&panel=off&view=front');
+  await expect(card(page).getByLabel('On its right')).toHaveValue('ik');
+  await rest(page);
+  await card(page).getByLabel('Time of the clip').fill('0.5');
+  // The camera steps back, and the picture has the two bodies alone.
+  const stage = page.locator('#stage');
+  for (let steps = 0; steps < 5; steps++) await stage.press('-');
+  await stage.blur();
+  await page.addStyleTag({ content: 'body > :not(main) { display: none !important }' });
+  await keepFilm(page, 'film-methods', 7, 640);
 });
 
 // A page of its own, from a server with rooms: a host without them says so.

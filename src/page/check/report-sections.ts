@@ -85,10 +85,10 @@ function noiseSection({ noise, unmeasured }: HeadsetReport): ReportSection {
     title: 'Noise at rest',
     lines: [
       ...measured,
-      ...unmeasured.map(({ tracker, frames, moved }) => ({
-        label: trackers[tracker],
-        value: notMeasured(moved ? 'you moved' : `seen in ${framesText(frames)} only`),
-      })),
+      ...unmeasured.map(({ tracker, frames, moved }) => {
+        const reason = frames === 0 ? 'it was not seen' : `too few steady frames (${framesText(frames)})`;
+        return { label: trackers[tracker], value: notMeasured(moved ? 'you moved' : reason) };
+      }),
     ],
     note: 'Standard deviation by axis, from second differences. Sway is the person and not counted; tremor is counted.',
   };

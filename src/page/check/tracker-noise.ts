@@ -67,13 +67,14 @@ export class TrackerNoise {
 
   /** Whether the tracker moved for most of the time. A glance aside is no such movement. */
   get moved(): boolean {
+    if (this.frames < 3) return false;
     return this.#medianSpeed(this.#moved) > restSpeed || this.#medianSpeed(this.#turned) > restTurn;
   }
 
   /** Returns the figures; null: it moved, or too few frames at a steady rate, of which two seconds are needed. */
   figures(): NoiseFigures | null {
     const times = this.#times;
-    if (times.length < 3 || this.moved) return null;
+    if (this.frames < 3 || this.moved) return null;
     const interval = this.#interval;
     if (!(interval > 0)) return null;
     const position = this.#levels(this.#moved, interval);

@@ -69,11 +69,13 @@ test('parts that were not measured give the reason and what to do', () => {
   const unmeasured = [
     { tracker: 'head', frames: 900, moved: true },
     { tracker: 'left', frames: 0, moved: false },
+    { tracker: 'right', frames: 70, moved: false },
   ] as const;
   const sections = reportSections({ ...sample!, noise: [], unmeasured: [...unmeasured], losses: [], frameTimes: [] });
   expect(sections.slice(1, 4).flatMap(({ lines }) => lines)).toEqual([
     { label: 'Head', value: 'Not measured: you moved. Measure again.' },
-    { label: 'Left hand', value: 'Not measured: seen in 0 frames only. Measure again.' },
+    { label: 'Left hand', value: 'Not measured: it was not seen. Measure again.' },
+    { label: 'Right hand', value: 'Not measured: too few steady frames (70 frames). Measure again.' },
     { label: 'Hands', value: 'Not measured: no hand was seen. Measure again.' },
     { label: 'Frames', value: 'Not measured: the check ended before. Measure again.' },
   ]);

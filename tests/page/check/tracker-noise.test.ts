@@ -129,8 +129,10 @@ test('a device that does not move at all has no noise and repeats itself', () =>
 
 test('fewer than two seconds give no figure', () => {
   const recorder = new TrackerNoise();
-  expect(recorder.figures()).toBeNull();
-  for (let row = 0; row < 100; row++) recorder.add(row / 72, { position: vec3(0, 1, 0), orientation: start });
+  expect([recorder.figures(), recorder.moved]).toEqual([null, false]);
+  recorder.add(0, { position: vec3(0, 1, 0), orientation: start });
+  expect([recorder.figures(), recorder.moved]).toEqual([null, false]);
+  for (let row = 1; row < 100; row++) recorder.add(row / 72, { position: vec3(0, 1, 0), orientation: start });
   expect(recorder.figures()).toBeNull();
 });
 
