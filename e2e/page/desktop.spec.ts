@@ -210,6 +210,7 @@ test('text stands out from its background, for every kind of colour vision @full
       contrasts.push((Math.max(...both) + 0.05) / (Math.min(...both) + 0.05));
     }
   }
+  await page.emulateMedia({ colorScheme: null });
   const least = Math.min(...contrasts);
   expect(least).toBeGreaterThan(4.5);
   reportFigures('comfort', { 'least contrast of text': `${least.toFixed(1)} : 1`, 'larger text': '130 %, remembered' });
