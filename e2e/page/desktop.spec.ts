@@ -208,17 +208,21 @@ test('text stands out from its background, for every kind of colour vision @full
       return channels.slice(0, 3).map((channel) => Number(channel) / 255);
     }, name);
   const contrasts = [];
-  for (const [text, background] of [
-    ['ink', 'glass'],
-    ['ink-soft', 'glass'],
-    ['accent-ink', 'accent'],
-    ['trouble', 'glass'],
-  ] as const) {
-    const [dark = 0, light = 0] = [luminance(await colour(text)), luminance(await colour(background))].sort(
-      (a, b) => a - b,
-    );
-    contrasts.push((light + 0.05) / (dark + 0.05));
+  for (const colorScheme of ['light', 'dark'] as const) {
+    await page.emulateMedia({ colorScheme });
+    for (const [text, background] of [
+      ['ink', 'glass'],
+      ['ink-soft', 'glass'],
+      ['primary-ink', 'primary'],
+      ['trouble', 'glass'],
+      ['surface', 'first'],
+      ['surface', 'second'],
+    ] as const) {
+      const both = [luminance(await colour(text)), luminance(await colour(background))] as const;
+      contrasts.push((Math.max(...both) + 0.05) / (Math.min(...both) + 0.05));
+    }
   }
+  await page.emulateMedia({ colorScheme: null });
   const least = Math.min(...contrasts);
   expect(least).toBeGreaterThan(4.5);
   reportFigures('comfort', { 'least contrast of text': `${least.toFixed(1)} : 1`, 'larger text': '130 %, remembered' });

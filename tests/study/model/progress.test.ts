@@ -18,10 +18,16 @@ import { aWomanOf26, outcomeOf, paperPlan, session } from './studies';
 
 const schedule = scheduleFor(paperPlan(), 'P02');
 
+/** Returns a session that has reached a step. */
+function sessionAt(isReached: Parameters<ReturnType<typeof session>['doUntil']>[0]) {
+  const one = session(schedule);
+  one.doUntil(isReached);
+  return one;
+}
+
 describe('a session', () => {
   test('runs from consent to the end and leaves what was asked for', () => {
-    const one = session(schedule);
-    one.doUntil(({ kind }) => kind === 'end');
+    const one = sessionAt(({ kind }) => kind === 'end');
     const kinds = one.records.map(({ kind }) => kind);
     expect(kinds.filter((kind) => kind === 'trial')).toHaveLength(6);
     expect(kinds.filter((kind) => kind === 'answers')).toHaveLength(4);
@@ -32,8 +38,7 @@ describe('a session', () => {
   });
 
   test('makes records that the store takes', () => {
-    const one = session(schedule);
-    one.doUntil(({ kind }) => kind === 'end');
+    const one = sessionAt(({ kind }) => kind === 'end');
     for (const record of one.records)
       expect(checkedRecord(JSON.parse(JSON.stringify(record)), paperPlan())).toEqual(record);
   });
@@ -57,8 +62,7 @@ describe('a session', () => {
   });
 
   test('takes no event out of place', () => {
-    const one = session(schedule);
-    one.doUntil(({ kind }) => kind === 'trial');
+    const one = sessionAt(({ kind }) => kind === 'trial');
     const before = one.progress;
     const outOfPlace: ProgressEvent[] = [
       { type: 'submit' },
@@ -73,11 +77,7 @@ describe('a session', () => {
 });
 
 describe('a rest', () => {
-  const resting = () => {
-    const one = session(schedule);
-    one.doUntil(({ kind }) => kind === 'rest');
-    return one;
-  };
+  const resting = () => sessionAt(({ kind }) => kind === 'rest');
 
   test('takes sixty seconds, not one less', () => {
     const one = resting();
@@ -147,8 +147,7 @@ test.each([
 
 describe('a rest that another device goes on with', () => {
   const reportedAfter = (seconds: number) => {
-    const one = session(schedule);
-    one.doUntil(({ kind }) => kind === 'rest');
+    const one = sessionAt(({ kind }) => kind === 'rest');
     one.wait(seconds);
     return { one, told: resumed(schedule, JSON.stringify(reported(one.progress, one.now))) };
   };
@@ -185,11 +184,7 @@ describe('a rest that another device goes on with', () => {
 });
 
 describe('a questionnaire', () => {
-  const asked = () => {
-    const one = session(schedule);
-    one.doUntil(({ kind }) => kind === 'questionnaire');
-    return one;
-  };
+  const asked = () => sessionAt(({ kind }) => kind === 'questionnaire');
 
   test('goes on after a reload with the answers given so far', () => {
     const one = asked();
@@ -263,8 +258,7 @@ describe('a questionnaire that stands behind the question whether to stop', () =
 
 describe('a trial', () => {
   const playing = () => {
-    const one = session(schedule);
-    one.doUntil(({ kind }) => kind === 'trial');
+    const one = sessionAt(({ kind }) => kind === 'trial');
     one.tell({ type: 'start' });
     return one;
   };
@@ -307,8 +301,7 @@ describe('a trial', () => {
 
 describe('a voided block', () => {
   test('starts again with its calibration, under a new run, and the first run is named', () => {
-    const one = session(schedule);
-    one.doUntil(({ id }) => id === 'archery/2/questionnaire');
+    const one = sessionAt(({ id }) => id === 'archery/2/questionnaire');
     expect(one.tell({ type: 'void-block', reason: 'controller died', repeat: true })).toBeNull();
     expect(one.records.at(-1)).toMatchObject({
       body: { type: 'void-block', task: 'archery', block: 2, run: 1, reason: 'controller died' },
@@ -325,8 +318,7 @@ describe('a voided block', () => {
   });
 
   test('is the one that was meant: a participant who has moved on loses no other', () => {
-    const one = session(schedule);
-    one.doUntil(({ id }) => id === 'archery/2/calibration');
+    const one = sessionAt(({ id }) => id === 'archery/2/calibration');
     const of = { task: 'archery', block: 1 };
     const late = { type: 'void-block', reason: 'controller died', repeat: true, of } as const;
     expect(one.tell(late)).toBe('block 1 of "archery", which the command is for, is not under way');
@@ -337,8 +329,7 @@ describe('a voided block', () => {
   });
 
   test('is left behind without a repetition', () => {
-    const one = session(schedule);
-    one.doUntil(({ id }) => id === 'archery/1/trial-1');
+    const one = sessionAt(({ id }) => id === 'archery/1/trial-1');
     one.tell({ type: 'void-block', reason: 'unwell', repeat: false });
     expect(one.step.id).toBe('archery/2/calibration');
   });
@@ -365,8 +356,7 @@ describe('a voided block', () => {
   });
 
   test('needs a reason', () => {
-    const one = session(schedule);
-    one.doUntil(({ id }) => id === 'archery/1/trial-1');
+    const one = sessionAt(({ id }) => id === 'archery/1/trial-1');
     expect(one.tell({ type: 'void-block', reason: ' ', repeat: true })).toContain('expected text');
   });
 });
