@@ -116,8 +116,7 @@ export class CheckWorlds {
 
   /** Updates the world to a time [s] around this user. */
   update(time: number, frame: TrackingFrame): void {
-    const { x, z } = frame.head.position;
-    this.#studio.follow(x, z);
+    this.#studio.follow({ hips: frame.head.position });
     if (this.#world === 'archery') {
       const { state, bow, time: matchTime } = this.#archeryPlay.follow(frame, nothingPressed);
       this.#archery.show(state, bow, matchTime, frame.head);
