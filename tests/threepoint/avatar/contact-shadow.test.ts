@@ -17,7 +17,7 @@ function discsOf({ object: { geometry } }: ContactShadow) {
 const hips = vec3(0.1, 0.95, -0.2);
 const leftFoot = vec3(0, 0.09, -0.3);
 
-test('a shadow lies under the body and under each foot, and fades under a foot that is lifted', () => {
+test('a shadow lies under body and feet, and fades under a foot that is lifted', () => {
   const shadow = new ContactShadow();
   const [body, left, right] = [0, 1, 2];
   shadow.follow({ hips, leftFoot, rightFoot: vec3(0.2, 0.09, -0.3) });
@@ -36,7 +36,7 @@ test('a shadow lies under the body and under each foot, and fades under a foot t
   expect(discsOf(shadow)).toHaveLength(2);
 });
 
-test('a shadow lies under the head alone where a body has no more, and beside it where it is drawn beside', () => {
+test('a shadow lies under a head without a body, and aside where the body is drawn', () => {
   const shadow = new ContactShadow();
   shadow.follow({ head: vec3(1, 1.6, 2) });
   expect(discsOf(shadow).map(({ at }) => at)).toEqual([[1, 2]]);
