@@ -142,8 +142,7 @@ export class CheckWorlds {
 
   /** Updates the world to a time [s] around this user. */
   update(time: number, frame: TrackingFrame): void {
-    const { x, z } = frame.head.position;
-    this.#studio.follow(x, z);
+    this.#studio.follow({ hips: frame.head.position });
     if (!this.#world) return;
     const { activity } = this.#world;
     activity.begin?.(time);

@@ -9,7 +9,8 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { createBlobShadow } from 'threepoint/three';
+import type { Vec3 } from 'threepoint/math';
+import { ContactShadow } from 'threepoint/three';
 import type { Quality } from '../scene/renderer';
 import type { DistantLight, EstimatedLight, Lighting } from '../scene/surroundings';
 
@@ -26,6 +27,9 @@ function setLight(light: DirectionalLight, { color, intensity, from }: DistantLi
 
 const scaled = ([x, y, z]: DistantLight['from'], by: number): DistantLight['from'] => [x * by, y * by, z * by];
 
+/** The joints of a person that light and shadow follow, floor frame [m]. */
+export type FollowedJoints = Readonly<Partial<Record<'hips' | 'leftFoot' | 'rightFoot', Vec3>>>;
+
 /** The lights, the fog and the shadows of a scene. Each place sets the same objects. */
 export class Lights {
   readonly #scene: Scene;
@@ -37,7 +41,7 @@ export class Lights {
   readonly #front = new DirectionalLight();
   readonly #fill = new HemisphereLight();
   readonly #fog = new Fog(new Color());
-  readonly #blob = createBlobShadow();
+  readonly #contact = new ContactShadow();
   /** The position of the body, floor frame [m]. */
   readonly #stand = { x: 0, z: 0 };
   #lighting: Lighting | null = null;
@@ -55,15 +59,16 @@ export class Lights {
     scene.fog = this.#fog;
     // What nothing covers is haze.
     scene.background = this.#fog.color;
-    scene.add(this.#blob, this.#key, this.#key.target, this.#rim, this.#front, this.#fill);
+    scene.add(this.#contact.object, this.#key, this.#key.target, this.#rim, this.#front, this.#fill);
   }
 
-  /** Moves light and shadow to the person at (x, z) [m], floor frame. */
-  follow(x: number, z: number): void {
-    this.#blob.position.x = x;
-    this.#blob.position.z = z;
-    this.#stand.x = x;
-    this.#stand.z = z;
+  /** Moves light and shadow to a person who has hips, drawn so far aside, along X [m]. */
+  follow(joints: FollowedJoints, aside: number): void {
+    const { hips } = joints;
+    if (!hips) return;
+    this.#contact.follow(joints, aside);
+    this.#stand.x = hips.x + aside;
+    this.#stand.z = hips.z;
     if (this.#lighting) this.#aimKey(this.#lighting);
   }
 
@@ -80,7 +85,7 @@ export class Lights {
     this.#fog.color.set(lighting.fog.color);
     this.#fog.near = lighting.fog.near;
     this.#fog.far = lighting.fog.far;
-    this.#blob.material.opacity = lighting.contactShadow;
+    this.#contact.setOpacity(lighting.contactShadow);
     this.#aimKey(lighting);
     if (this.#quality === 'low') return;
     this.#setShadow(lighting);

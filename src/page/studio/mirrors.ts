@@ -5,7 +5,7 @@ import type { Quality } from '../scene/renderer';
 
 /** The user stands at the origin and looks along −Z, at the mirror on the wall [m]. */
 export const wallDistance = 1.4;
-/** The wide mirror reaches further to the left: the menu hangs right of it, in sight and beside every reflection [m]. */
+/** The wide mirror [m] reaches further to the left: the menu has its place right of it, in sight of the user. */
 const wide = { width: 3.1, height: 2.4, middle: -0.6 };
 /** A mirror at the user's right is out of the way of what flies ahead [m, rad]. */
 const aside = { x: 1.95, z: -0.1, turned: -1.3 };

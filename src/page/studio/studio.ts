@@ -14,7 +14,7 @@ import { uploadToGpu } from '../scene/gpu-upload';
 import { hazeColor } from '../scene/outdoors/sky';
 import type { Quality } from '../scene/renderer';
 import type { EstimatedLight, Lighting, Surroundings } from '../scene/surroundings';
-import { Lights } from './lights';
+import { type FollowedJoints, Lights } from './lights';
 import { createRoom } from './room/room';
 
 const shadowSize = 12;
@@ -117,8 +117,8 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
     },
     /** Sets the light to a device's estimate of its room; null: to the lighting of the surroundings. */
     setEstimatedLight: (light: EstimatedLight | null): void => lights.setEstimate(light),
-    /** Moves shadow and light to the person at (x, z) [m], floor frame. */
-    follow: (x: number, z: number): void => lights.follow(x, z),
+    /** Moves shadow and light to a person who has hips, drawn so far aside, along X [m]. */
+    follow: (joints: FollowedJoints, aside = 0): void => lights.follow(joints, aside),
     openWindows,
     /** Shows the studio on this layer only. */
     setLayer(onLayer: number): void {

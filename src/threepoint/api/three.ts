@@ -1,7 +1,7 @@
 // "threepoint/three": draws the body as an avatar in three.js, driven by a WebXR session.
 export { type Avatar, createAvatarBetweenFrames } from '../avatar/avatar';
-export { createBlobShadow } from '../avatar/blob-shadow';
 export { bodyLabelOf, bodyLabels } from '../avatar/built-in-body-labels';
+export { ContactShadow } from '../avatar/contact-shadow';
 export { createDebugSkeleton } from '../avatar/debug-skeleton';
 export { showToEyesOnly } from '../avatar/eye-layers';
 export { GazeChoice, GazeTargets } from '../avatar/gaze-targets';

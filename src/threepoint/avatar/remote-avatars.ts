@@ -1,4 +1,4 @@
-import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
+import { Group, type Object3D } from 'three';
 import type { AvatarRef } from '../core/body/avatar-ref';
 import { bodyOf, isBuiltInAvatar, skinToneOf } from '../core/body/built-in-bodies';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
@@ -8,7 +8,7 @@ import { type MutableTransform, makeTransform, transformPoint } from '../core/ma
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3, vec3 } from '../core/math/vec3';
 import type { Avatar } from './avatar';
-import { createBlobShadow } from './blob-shadow';
+import { ContactShadow } from './contact-shadow';
 import { GazeChoice, GazeTargets } from './gaze-targets';
 import { meshesOf } from './scene-meshes';
 
@@ -262,7 +262,7 @@ class RemoteBody<Wanted, Id> {
   /** The person's floor, invisible at first. */
   readonly place = new Group();
   readonly placement: MutableTransform<'floor', 'floor'> = makeTransform();
-  readonly #shadow: Mesh<PlaneGeometry, MeshBasicMaterial> | null;
+  readonly #shadow: ContactShadow | null;
   readonly #gaze = new GazeChoice();
   #fitted: Calibration | null = null;
   #palette: string | null = null;
@@ -272,10 +272,10 @@ class RemoteBody<Wanted, Id> {
     this.avatar = avatar;
     this.of = of;
     this.usedAt = usedAt;
-    this.#shadow = shadow ? createBlobShadow() : null;
+    this.#shadow = shadow ? new ContactShadow() : null;
     this.place.visible = false;
     this.place.add(avatar.object);
-    if (this.#shadow) this.place.add(this.#shadow);
+    if (this.#shadow) this.place.add(this.#shadow.object);
   }
 
   /** Turns the eyes to what the face points to. */
@@ -301,7 +301,7 @@ class RemoteBody<Wanted, Id> {
     if (opacity !== this.#opacity) {
       this.#opacity = opacity;
       avatar.setOpacity(opacity);
-      if (this.#shadow) this.#shadow.visible = opacity > 0.5;
+      if (this.#shadow) this.#shadow.object.visible = opacity > 0.5;
     }
     copyVec3(placement.position, this.placement.position);
     copyQuat(placement.orientation, this.placement.orientation);
@@ -309,16 +309,12 @@ class RemoteBody<Wanted, Id> {
     place.quaternion.copy(placement.orientation);
     avatar.setMouth(mouth);
     avatar.setPose(pose, time);
-    if (!this.#shadow) return;
-    const { hips, head } = avatar.jointPositions();
-    const over = hips ?? head;
-    if (over) this.#shadow.position.set(over.x, this.#shadow.position.y, over.z);
+    this.#shadow?.follow(avatar.jointPositions());
   }
 
   dispose(): void {
     this.place.removeFromParent();
     this.avatar.dispose();
-    this.#shadow?.geometry.dispose();
-    this.#shadow?.material.dispose();
+    this.#shadow?.dispose();
   }
 }

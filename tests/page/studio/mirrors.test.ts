@@ -16,7 +16,7 @@ function glassOf(mirror: Object3D) {
   return { ...glass.geometry.parameters, middle, faces: new Vector3(0, 0, 1).transformDirection(glass.matrixWorld) };
 }
 
-test('the mirror of the studio hangs on the wall ahead of the user, and faces the user', () => {
+test('the mirror of the studio hangs on the wall ahead of the user and faces back', () => {
   const [wall, ...others] = shown(new Mirrors('high'));
   expect(others).toEqual([]);
   const { width, height, middle, faces } = glassOf(wall!);

@@ -215,16 +215,31 @@ export const fingersOf = ({ fingers, fingerPoint }: BodyRig): Region[] =>
     };
   });
 
-export const legOf = ({ thigh: t, calf: c }: Girths): Region => ({
+const mannequinLeg: Region = {
   inner: 0.05,
   joint: 0.06,
   parts: [
-    part('leftUpperLeg', 0.022, taperedCapsule([0.088, 0.9, -0.004], [0.096, 0.53, 0.002], 0.082 * t, 0.052 * t)),
-    part('leftUpperLeg', 0.022, ellipsoid([0.098, 0.74, 0.02], [0.064 * t, 0.17, 0.056 * t])),
-    part('leftUpperLeg', 0.022, ellipsoid([0.092, 0.76, -0.03], [0.06 * t, 0.16, 0.05 * t])),
-    part('leftLowerLeg', 0.02, ellipsoid([0.096, 0.5, 0.012], [0.049 * c, 0.055, 0.048 * c])),
-    part('leftLowerLeg', 0.02, taperedCapsule([0.096, 0.47, 0], [0.098, 0.1, -0.02], 0.048 * c, 0.032 * c)),
-    part('leftLowerLeg', 0.02, ellipsoid([0.097, 0.36, -0.026], [0.05 * c, 0.115, 0.046 * c])),
+    part('leftUpperLeg', 0.022, taperedCapsule([0.088, 0.9, -0.004], [0.096, 0.53, 0.002], 0.082, 0.052)),
+    part('leftUpperLeg', 0.022, ellipsoid([0.098, 0.74, 0.02], [0.064, 0.17, 0.056])),
+    part('leftUpperLeg', 0.022, ellipsoid([0.092, 0.76, -0.03], [0.06, 0.16, 0.05])),
+    part('leftLowerLeg', 0.02, ellipsoid([0.096, 0.5, 0.012], [0.049, 0.055, 0.048])),
+    part('leftLowerLeg', 0.02, taperedCapsule([0.096, 0.47, 0], [0.098, 0.1, -0.02], 0.048, 0.032)),
+    part('leftLowerLeg', 0.02, ellipsoid([0.097, 0.36, -0.026], [0.05, 0.115, 0.046])),
+  ],
+};
+
+/** A leg whose shape shows through trousers: narrow at the knee, whose cap lies ahead, with a full calf behind. */
+export const legOf = ({ thigh: t, calf: c }: Girths): Region => ({
+  inner: 0.04,
+  joint: 0.06,
+  parts: [
+    part('leftUpperLeg', 0.022, taperedCapsule([0.088, 0.9, -0.004], [0.097, 0.53, 0.002], 0.084 * t, 0.046 * t)),
+    part('leftUpperLeg', 0.022, ellipsoid([0.1, 0.75, 0.022], [0.067 * t, 0.165, 0.058 * t])),
+    part('leftUpperLeg', 0.022, ellipsoid([0.092, 0.77, -0.034], [0.062 * t, 0.15, 0.052 * t])),
+    part('leftLowerLeg', 0.018, ellipsoid([0.097, 0.505, 0.022], [0.038 * c, 0.042, 0.035 * c])),
+    part('leftLowerLeg', 0.018, taperedCapsule([0.097, 0.49, 0.001], [0.099, 0.1, -0.02], 0.043 * c, 0.031 * c)),
+    part('leftLowerLeg', 0.018, ellipsoid([0.104, 0.365, -0.033], [0.045 * c, 0.1, 0.044 * c])),
+    part('leftLowerLeg', 0.018, ellipsoid([0.088, 0.345, -0.03], [0.04 * c, 0.095, 0.042 * c])),
   ],
 });
 
@@ -278,7 +293,7 @@ export function mannequinAnatomy(rig: BodyRig): Anatomy {
     averageHead,
     averageFace,
     averageEars,
-    legOf(averageGirths),
+    mannequinLeg,
     averageFoot,
     armOf(rig, averageGirths),
     palmOf(rig, 1),

@@ -25,7 +25,7 @@ interface Colours {
  * Triangles before seams are cut: a beard or a large head needs some of them for its shapes, so that the file stays as
  * small.
  */
-const usualTriangles = 2_900;
+const usualTriangles = 2_600;
 
 function person(
   name: string,
@@ -167,7 +167,7 @@ const stout = person(
     },
   },
   { skin: '#e0ac86', hair: '#8a4a24', top: '#c2573c', trim: '#6d2f2b', bottom: '#4a4f58', shoes: '#7b5a3e' },
-  2_700,
+  2_800,
 );
 
 const child = person(

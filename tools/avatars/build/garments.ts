@@ -62,6 +62,11 @@ const waist = 1.04;
 /** How far cloth stands off at its edge besides its usual distance, so many metres before the edge. */
 const flare = (before: number): number => smoothstep(0.05, 0.002, before);
 
+/** The height of a sole, where the cap over the toes begins on it, and how far its tip is off the floor [m]. */
+const soleHeight = 0.028;
+const toeCap = 0.142;
+const toeSpring = (z: number): number => 2.2 * Math.max(0, z - 0.115) ** 2;
+
 /** A shell of cloth about a body, within a region (negative inside): beneath its edge the opening goes in. */
 const shell = (body: number, off: number, region: number): number =>
   smoothBoth(body - off, region + recess * Math.max(0, off - thickness - body), edge);
@@ -96,11 +101,18 @@ export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: 
     if (y > 0.3) return y - 0.1;
     return smoothBoth(
       smoothUnion(shod(x, y, z), leg(x, y, z), 0.03) - 0.011,
-      y - shoes - 0.25 * Math.max(0, -z - 0.02),
+      // The collar is high at the heel and at the tongue, and low at the ankle.
+      y - shoes - 0.3 * Math.max(0, -z - 0.035) - 0.3 * smoothstep(-0.02, 0.03, z) * Math.max(0, 0.07 - z),
       edge,
     );
   };
-  const sole: DistanceField = (x, y, z) => (y > 0.3 ? y - 0.02 : smoothBoth(shod(x, y, z) - 0.0165, y - 0.03, 0.005));
+  /** A sole is thicker at the heel and wider below, and its tip is off the floor. */
+  const sole: DistanceField = (x, y, z) => {
+    if (y > 0.3) return y - 0.02;
+    const top = soleHeight + 0.008 * smoothstep(0.02, -0.06, z);
+    const wider = 0.0105 + 0.006 * smoothstep(top, top - 0.014, y);
+    return Math.max(shod(x, y, z) - wider, y - top, toeSpring(z) - y);
+  };
   return [
     {
       label: 'Top',
@@ -130,7 +142,11 @@ export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: 
         { label: 'BottomTrim', value: (x, y, z) => -bottomEdge(x, y, z) - trimWidth },
       ],
     },
-    { label: 'Shoes', field: shoe },
+    {
+      label: 'Shoes',
+      field: shoe,
+      marks: [{ label: 'Sole', value: (_, y, z) => toeCap - z + 0.7 * (y - soleHeight) }],
+    },
     { label: 'Sole', field: sole },
   ];
 }

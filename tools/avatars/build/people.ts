@@ -224,12 +224,14 @@ export function personOf(
     ],
     finer(x, y, z) {
       // Edges grow most where a full sleeve is projected.
-      if (isFull && Math.abs(Math.abs(x) - rig.armJoints.elbow) < 0.05) return 0.019;
+      if (isFull && Math.abs(Math.abs(x) - rig.armJoints.elbow) < 0.05) return 0.027;
       if (Math.abs(x) > rig.armJoints.wrist + 0.06) return 0.017;
       // Weights of the upper arm would spread along longer edges, and pull at a cuff.
       const ofSleeve = Math.abs(x) > rig.armJoints.elbow && Math.abs(x) < measures.wears.top.sleeve - trimWidth;
       if (ofSleeve) return 0.04;
-      if (garments.some(({ edge }) => edge && isTrimmed(edge(Math.abs(x), y, z)))) return 0.022;
+      // The cap of a shoe is round.
+      if (y < measures.wears.shoes && z > 0.1) return 0.034;
+      if (garments.some(({ edge }) => edge && isTrimmed(edge(Math.abs(x), y, z)))) return 0.025;
       return faceFineness(face, x, y, z);
     },
     shapes: Object.fromEntries(shapes) as Record<FaceShape, Displacement>,

@@ -164,10 +164,10 @@ function lookAtOf({ bones }: BodyRig) {
   return {
     type: 'bone',
     offsetFromHeadBone: [0, eye![1] - head![1], eye![2] - head![2]],
-    rangeMapHorizontalInner: range(16),
-    rangeMapHorizontalOuter: range(16),
-    rangeMapVerticalDown: range(12),
-    rangeMapVerticalUp: range(12),
+    rangeMapHorizontalInner: range(24),
+    rangeMapHorizontalOuter: range(24),
+    rangeMapVerticalDown: range(14),
+    rangeMapVerticalUp: range(14),
   };
 }
 

@@ -38,7 +38,7 @@ export function daylight(place: Daylight, { position, orientation }: Transform<'
   return {
     // Without shadows and reflections the sky has to light what the sun does not.
     key: { color: '#fff0d6', intensity: high ? sunIntensity : sunIntensity - 0.1, from: sun.toArray() },
-    rim: { color: '#cfe2ff', intensity: 0.5, from: inFloor(new Vector3(-3, 2.6, 1)).toArray() },
+    rim: { color: '#cfe2ff', intensity: 1.1, from: inFloor(new Vector3(-3, 2.6, 1)).toArray() },
     front: { color: '#e6efff', intensity: 0.55, from: inFloor(new Vector3(-1.2, 1.6, -2.5)).toArray() },
     fill: { sky: '#cfe3fb', ground: groundColor, intensity: high ? skyIntensity : skyIntensity + 0.35 },
     shadow: { halfSize: shadows.halfSize, resolution: 2048, softness: 3, centre: { x: middle.x, z: middle.z } },

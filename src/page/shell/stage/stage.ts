@@ -102,15 +102,15 @@ export class Stage {
     const { view, studio } = this;
     const elapsed = Math.min(longestStep, Math.max(0, time - this.#lastTime));
     this.#lastTime = time;
-    const hips = avatar?.jointPositions().hips;
+    const joints = avatar?.jointPositions();
     view.setHeight(avatar?.height ?? 0);
-    if (watched) studio.follow(watched.pelvis.x, outOfSight);
-    else if (hips) studio.follow(hips.x + beside, hips.z);
+    if (watched) studio.follow({ hips: { ...watched.pelvis, z: outOfSight } });
+    else if (joints) studio.follow(joints, beside);
     if (inSession) return;
     if (watched) view.update(watched.pelvis, watched.eyes, elapsed);
     else if (frame) {
       const { position } = frame.head;
-      const pelvis = hips ?? { ...position, y: position.y * pelvisShare };
+      const pelvis = joints?.hips ?? { ...position, y: position.y * pelvisShare };
       view.update(aside === 0 ? pelvis : { ...pelvis, x: pelvis.x + aside }, frame.head, elapsed);
     }
   }
