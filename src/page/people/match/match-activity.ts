@@ -250,7 +250,11 @@ export abstract class MatchActivity<
 
   banner(): string | null {
     const notice = this.#notice;
-    return bannerText(this.play.status) ?? (notice && this.#now < notice.until ? notice.text : null);
+    const { status, room } = this.play;
+    return (
+      bannerText(status, room !== null && room.mySeat !== null) ??
+      (notice && this.#now < notice.until ? notice.text : null)
+    );
   }
 
   createPanel(): ActivityPanel {
