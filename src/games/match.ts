@@ -34,7 +34,7 @@ export function createMatch<State, Action, Event, Options>(
   let waiting: Action[] = [];
 
   /** Adds the actions of a frame with their delay in the tick [s]. */
-  function place(actions: readonly Action[], delay: number, due: Action[]): void {
+  function queue(actions: readonly Action[], delay: number, due: Action[]): void {
     for (const action of actions) due.push(hooks.delayed ? hooks.delayed(action, delay) : action);
   }
 
@@ -54,11 +54,11 @@ export function createMatch<State, Action, Event, Options>(
       const tick = Math.floor(now / rules.tickSeconds);
       const inTick = Math.min(Math.max(now - tick * rules.tickSeconds, 0), rules.tickSeconds * (1 - 1e-9));
       const events: Event[] = [];
-      if (tick < stepped) place(actions, 0, waiting);
+      if (tick < stepped) queue(actions, 0, waiting);
       while (stepped <= tick) {
         const due = waiting;
         waiting = [];
-        if (stepped === tick) place(actions, inTick, due);
+        if (stepped === tick) queue(actions, inTick, due);
         hooks.onTick?.(due);
         const done = rules.step(state, due);
         state = done.state;

@@ -61,9 +61,9 @@ type Grab = Extract<BallAction, { type: 'grab' }>;
 
 function grab(state: BallState, player: number, { ball, side }: Grab, startedAt: number): Step | Refusal {
   const fist = state.players[player]![side];
-  const place = state.balls[ball];
-  if (!place) return 'no-such-ball';
-  if (place.on !== 'rack') return 'taken';
+  const location = state.balls[ball];
+  if (!location) return 'no-such-ball';
+  if (location.on !== 'rack') return 'taken';
   if (ballInHand(state, player, side) >= 0) return 'hand-full';
   if (!fist || distance(fist, rackPosition(ball, state.options.balls)) > grabReach) return 'reach';
   if (ballMatchTime(state) >= startedAt + state.options.seconds) return 'time';

@@ -1,6 +1,6 @@
 import { vec3 } from 'threepoint/math';
 import * as v from 'valibot';
-import type { BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
+import type { BallLocation, BallPlayer, BallState, TimedLaunch } from './ball-state';
 import { ballRules } from './rules';
 
 const finite = v.pipe(v.number(), v.finite());
@@ -13,7 +13,7 @@ const launch = v.tuple([finite, finite, finite, finite, finite, finite, finite])
  * Schema of a ball. rack · hand: player, right? · air: thrower, missed?, launch · floor: thrower, launch · basket:
  * thrower.
  */
-const place = v.union([
+const location = v.union([
   v.literal(0),
   v.tuple([v.literal(1), player, v.boolean()]),
   v.tuple([v.literal(2), player, v.boolean(), launch]),
@@ -36,7 +36,7 @@ export const packedBallSchema = v.strictObject({
   rotate: v.boolean(),
   /** Flags of each player: present (1) and ready (2). */
   p: v.array(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(3))),
-  balls: v.array(place),
+  balls: v.array(location),
   /** Basket: time, opening, normal. */
   basket: launch,
 });
@@ -58,7 +58,7 @@ const unpackLaunch = ([time, x, y, z, vx, vy, vz]: PackedBall['basket']): TimedL
   velocity: vec3(vx, vy, vz),
 });
 
-function packPlace(ball: BallPlace): PackedBall['balls'][number] {
+function packLocation(ball: BallLocation): PackedBall['balls'][number] {
   switch (ball.on) {
     case 'rack':
       return 0;
@@ -73,7 +73,7 @@ function packPlace(ball: BallPlace): PackedBall['balls'][number] {
   }
 }
 
-function unpackPlace(packed: PackedBall['balls'][number]): BallPlace {
+function unpackLocation(packed: PackedBall['balls'][number]): BallLocation {
   if (packed === 0) return { on: 'rack' };
   switch (packed[0]) {
     case 1:
@@ -97,7 +97,7 @@ export const packBall = (state: BallState): PackedBall => ({
   score: state.score,
   rotate: state.rotate,
   p: state.players.map(({ present, ready }) => (present ? 1 : 0) + (ready ? 2 : 0)),
-  balls: state.balls.map(packPlace),
+  balls: state.balls.map(packLocation),
   basket: packLaunch({ time: state.basket.at, position: state.basket.position, velocity: state.basket.normal }),
 });
 
@@ -123,7 +123,7 @@ export function unpackBall(packed: PackedBall): BallState | null {
       const flags = packed.p[index] ?? 0;
       return { ...fresh, present: (flags & 1) !== 0, ready: (flags & 2) !== 0 };
     }),
-    balls: packed.balls.map(unpackPlace),
+    balls: packed.balls.map(unpackLocation),
     basket: { at, position: vec3(x, y, z), normal: vec3(nx, ny, nz) },
   };
 }

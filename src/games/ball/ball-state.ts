@@ -43,7 +43,7 @@ export interface TimedLaunch extends Launch {
   readonly time: number;
 }
 
-export type BallPlace =
+export type BallLocation =
   | { readonly on: 'rack' }
   | { readonly on: 'hand'; readonly player: number; readonly side: Side }
   /** missed: it has touched the floor and can no longer be caught. */
@@ -78,7 +78,7 @@ export interface BallState {
   readonly rotate: boolean;
   readonly players: readonly BallPlayer[];
   /** The balls by number; the first half belongs in the first thrower's rack. */
-  readonly balls: readonly BallPlace[];
+  readonly balls: readonly BallLocation[];
   readonly basket: Basket;
 }
 

@@ -1,9 +1,9 @@
-import type { BallAction, BallEvent, BallPlace, BallState } from './ball-state';
+import type { BallAction, BallEvent, BallLocation, BallState } from './ball-state';
 import { withBall, withPlayer } from './state-changes';
 import { ballInHand, tickSeconds } from './state-selectors';
 
-const throwerOf = (place: BallPlace | undefined): number =>
-  place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;
+const throwerOf = (location: BallLocation | undefined): number =>
+  location?.on === 'air' || location?.on === 'floor' ? location.thrower : 0;
 
 /**
  * Returns the state after an event of the Room: balls, score, phase, `rotate` and presence. The tick, heads, hands and

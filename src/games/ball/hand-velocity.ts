@@ -30,10 +30,10 @@ export class HandVelocity {
     const last = path.at(-1);
     if (last && !(time > last.time)) return;
     if (last && time - last.time > longestGap) this.reset();
-    const place = this.#spare.pop() ?? makeSample();
-    place.time = time;
-    copyVec3(position, place.position);
-    path.push(place);
+    const sample = this.#spare.pop() ?? makeSample();
+    sample.time = time;
+    copyVec3(position, sample.position);
+    path.push(sample);
     // Keep one position before the window, to interpolate at its start.
     while (path.length > 2 && path[1]!.time <= time - throwWindow) this.#spare.push(path.shift()!);
   }

@@ -4,7 +4,7 @@ export { type BallConnection, type BallRoomView, ballClientPolicy, createBallLoo
 export { ballKind } from './ball-messages';
 export { type BallGame, BallPolicy } from './ball-policy';
 export type { BallTerms } from './ball-room-kind';
-export type { BallEvent, BallInput, BallPlace, BallRole, BallState, Refusal, TimedLaunch } from './ball-state';
+export type { BallEvent, BallInput, BallLocation, BallRole, BallState, Refusal, TimedLaunch } from './ball-state';
 export { basketDepth, basketInHands, basketRadius, landsIn, type Opening, rimTube } from './basket';
 export { ballInAir, ballRadius } from './flight';
 export { type BallCue, type BallGestureFrame, BallGestures } from './gestures';

@@ -1,20 +1,20 @@
-import type { BallEvent, BallPlace, BallState, Basket, TimedLaunch } from './ball-state';
+import type { BallEvent, BallLocation, BallState, Basket, TimedLaunch } from './ball-state';
 import { firstBasketContact } from './basket-collision';
 import { floorBounceOf, floorContactTime } from './flight';
 import { round, roundedLaunch, type Step, withBall } from './state-changes';
 
-type InAir = Extract<BallPlace, { on: 'air' }>;
+type InAir = Extract<BallLocation, { on: 'air' }>;
 
-/** Returns the next place of a flying ball while the basket moves, and adds the events; null: it flies on. */
-function nextPlace(
+/** Returns the next location of a flying ball while the basket moves, and adds the events; null: it flies on. */
+function nextLocation(
   ball: number,
-  place: InAir,
+  location: InAir,
   score: number,
   basket: BasketMotion,
   events: BallEvent[],
-): BallPlace | null {
-  const { thrower, launch } = place;
-  const meeting = place.missed || !basket.isHeld ? null : firstBasketContact(launch, basket.from, basket.to);
+): BallLocation | null {
+  const { thrower, launch } = location;
+  const meeting = location.missed || !basket.isHeld ? null : firstBasketContact(launch, basket.from, basket.to);
   if (meeting?.kind === 'caught') {
     events.push({ type: 'caught', ball, player: thrower, at: round(meeting.time), score: score + 1 });
     return { on: 'basket', thrower };
@@ -22,13 +22,13 @@ function nextPlace(
   if (meeting) {
     const bounced = afterFlight(roundedLaunch(meeting.launch), launch);
     events.push({ type: 'bounced', ball, off: 'basket', launch: bounced });
-    return { ...place, launch: bounced };
+    return { ...location, launch: bounced };
   }
   const time = floorContactTime(launch);
   if (time > basket.to.at) return null;
   const { launch: after, rolls } = floorBounceOf(launch, Math.max(time, launch.time));
   const bounced = afterFlight(roundedLaunch(after), launch);
-  if (!place.missed) events.push({ type: 'missed', ball, player: thrower });
+  if (!location.missed) events.push({ type: 'missed', ball, player: thrower });
   events.push(
     rolls ? { type: 'rolls', ball, launch: bounced } : { type: 'bounced', ball, off: 'floor', launch: bounced },
   );
@@ -49,11 +49,11 @@ export function resolveFlights(state: BallState, to: Basket, isHeld = true): Ste
   const events: BallEvent[] = [];
   let next: BallState = { ...state, basket: to };
   for (let ball = 0; ball < state.balls.length; ball++) {
-    let place: BallPlace | null = state.balls[ball]!;
-    while (place?.on === 'air') {
-      place = nextPlace(ball, place, next.score, way, events);
-      if (place) next = withBall(next, ball, place);
-      if (place?.on === 'basket') next = { ...next, score: next.score + 1 };
+    let location: BallLocation | null = state.balls[ball]!;
+    while (location?.on === 'air') {
+      location = nextLocation(ball, location, next.score, way, events);
+      if (location) next = withBall(next, ball, location);
+      if (location?.on === 'basket') next = { ...next, score: next.score + 1 };
     }
   }
   return { state: next, events };

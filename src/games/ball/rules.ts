@@ -43,10 +43,10 @@ function returnHeld(state: BallState, player: number | null): Step {
   let next = state;
   const events: BallEvent[] = [];
   for (let ball = 0; ball < state.balls.length; ball++) {
-    const place = state.balls[ball]!;
-    if (place.on !== 'hand' || (player !== null && place.player !== player)) continue;
+    const location = state.balls[ball]!;
+    if (location.on !== 'hand' || (player !== null && location.player !== player)) continue;
     next = withBall(next, ball, { on: 'rack' });
-    events.push({ type: 'returned', ball, player: place.player });
+    events.push({ type: 'returned', ball, player: location.player });
   }
   return { state: next, events };
 }
@@ -196,7 +196,8 @@ const isPastThrows = (state: BallState): boolean =>
 
 /** Returns why the round is over; null: it continues, as it does while a ball is held or flies. */
 function roundEnd(state: BallState): BallEnd | null {
-  for (const place of state.balls) if (place.on === 'hand' || (place.on === 'air' && !place.missed)) return null;
+  for (const location of state.balls)
+    if (location.on === 'hand' || (location.on === 'air' && !location.missed)) return null;
   if (ballsLeft(state) === 0) return 'balls';
   return ballSecondsLeft(state) <= 0 ? 'time' : null;
 }
@@ -273,7 +274,7 @@ export const ballRules: GameRules<BallState, BallInput, BallEvent, BallOptions> 
 
 /** How the ball game is played, a sentence a line; `balls` and `seconds` of a match. */
 export const ballRulesText = (balls: number, seconds: number): readonly string[] => [
-  'Two players throw, the third holds the basket, 5 m away. Bots take free places.',
+  'Two players throw, the third holds the basket, 5 m away. Bots take free seats.',
   `${balls} balls, ${Math.round(seconds)} seconds, a point for every ball that lands in the basket.`,
   'Throw: take a ball from the rack (trigger, grip or pinch), swing and release. Dropped balls return to the rack.',
   'Catch: the basket hangs between both hands, or at one, and opens where the thumbs point.',

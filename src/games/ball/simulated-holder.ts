@@ -103,9 +103,9 @@ class Holder implements BallBot {
     const now = ballMatchTime(state);
     let next: TimedLaunch | null = null;
     let soonest = Number.POSITIVE_INFINITY;
-    for (const place of state.balls) {
-      if (place.on !== 'air' || place.missed) continue;
-      const { launch } = place;
+    for (const location of state.balls) {
+      if (location.on !== 'air' || location.missed) continue;
+      const { launch } = location;
       const when = launch.time + fallTime(launch, this.#home.y);
       if (when < now - 0.05 || when >= soonest) continue;
       this.#postures.inFloor(ballInAir(launch, when, point), point);
@@ -156,9 +156,9 @@ class Holder implements BallBot {
 
   /** Writes the position of the first flying ball, floor frame; without one that of the opening. */
   #findFlying(state: BallState, target: MutableVec3): void {
-    for (const place of state.balls) {
-      if (place.on !== 'air' || place.missed) continue;
-      this.#postures.inFloor(ballInAir(place.launch, ballMatchTime(state), target), target);
+    for (const location of state.balls) {
+      if (location.on !== 'air' || location.missed) continue;
+      this.#postures.inFloor(ballInAir(location.launch, ballMatchTime(state), target), target);
       return;
     }
     copyVec3(this.#opening, target);

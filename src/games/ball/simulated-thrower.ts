@@ -60,8 +60,8 @@ const rise = vec3(0, 0, 0);
 function mayThrow({ state, player }: BotView): boolean {
   if (state.phase !== 'running') return true;
   const now = ballMatchTime(state);
-  for (const place of state.balls) {
-    if (place.on === 'air' && !place.missed && now - place.launch.time < betweenThrows) return false;
+  for (const location of state.balls) {
+    if (location.on === 'air' && !location.missed && now - location.launch.time < betweenThrows) return false;
   }
   const station = state.players[player]?.station ?? 0;
   return Math.floor(now / betweenThrows) % 2 === station % 2;

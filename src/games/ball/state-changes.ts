@@ -1,5 +1,5 @@
 import { type Vec3, vec3 } from 'threepoint/math';
-import type { BallEvent, BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
+import type { BallEvent, BallLocation, BallPlayer, BallState, TimedLaunch } from './ball-state';
 
 /** A state and the events that led to it. */
 export type Step = { readonly state: BallState; readonly events: readonly BallEvent[] };
@@ -29,5 +29,5 @@ export function withPlayer(state: BallState, index: number, change: Partial<Ball
   return player ? { ...state, players: withItem(state.players, index, { ...player, ...change }) } : state;
 }
 
-export const withBall = (state: BallState, ball: number, place: BallPlace): BallState =>
-  ball < state.balls.length ? { ...state, balls: withItem(state.balls, ball, place) } : state;
+export const withBall = (state: BallState, ball: number, location: BallLocation): BallState =>
+  ball < state.balls.length ? { ...state, balls: withItem(state.balls, ball, location) } : state;

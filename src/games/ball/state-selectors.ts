@@ -1,5 +1,5 @@
 import { addScaled, type MutableVec3, type Side, vec3 } from 'threepoint/math';
-import type { BallPlace, BallState } from './ball-state';
+import type { BallLocation, BallState } from './ball-state';
 import { basketRadius } from './basket';
 import { ballInAir, ballOnFloor, ballRadius } from './flight';
 import { rackPosition } from './stations';
@@ -25,22 +25,22 @@ export function displayedSeconds(state: BallState, before: number): number {
 /** Returns the number of balls that may still be caught. */
 export function ballsLeft({ balls }: BallState): number {
   let count = 0;
-  for (const place of balls) if (isOpen(place)) count += 1;
+  for (const location of balls) if (isOpen(location)) count += 1;
   return count;
 }
 
-const isOpen = (place: BallPlace): boolean =>
-  place.on === 'rack' || place.on === 'hand' || (place.on === 'air' && !place.missed);
+const isOpen = (location: BallLocation): boolean =>
+  location.on === 'rack' || location.on === 'hand' || (location.on === 'air' && !location.missed);
 
 /** Returns the number of balls that a player's throws have brought into the basket. */
 export const catchesOf = ({ balls }: BallState, player: number): number =>
-  balls.filter((place) => place.on === 'basket' && place.thrower === player).length;
+  balls.filter((location) => location.on === 'basket' && location.thrower === player).length;
 
 /** Returns the ball in a hand of a player; −1: none. */
 export function ballInHand({ balls }: BallState, player: number, side: Side): number {
   for (let ball = 0; ball < balls.length; ball++) {
-    const place = balls[ball];
-    if (place?.on === 'hand' && place.player === player && place.side === side) return ball;
+    const location = balls[ball];
+    if (location?.on === 'hand' && location.player === player && location.side === side) return ball;
   }
   return -1;
 }
@@ -55,16 +55,16 @@ export function ballPosition(
   time: number,
   target: MutableVec3 = vec3(0, 0, 0),
 ): MutableVec3 | null {
-  const place = state.balls[ball];
-  switch (place?.on) {
+  const location = state.balls[ball];
+  switch (location?.on) {
     case 'rack':
       return rackPosition(ball, state.options.balls, target);
     case 'air':
-      ballInAir(place.launch, time, target);
+      ballInAir(location.launch, time, target);
       if (!(target.y >= ballRadius)) target.y = ballRadius;
       return target;
     case 'floor':
-      return ballOnFloor(place.launch, time, target);
+      return ballOnFloor(location.launch, time, target);
     case 'basket':
       return addScaled(state.basket.position, state.basket.normal, -basketRadius, target);
     default:

@@ -97,7 +97,7 @@ export class BallView {
     this.#showBalls(scene);
     this.#pops.show(pageTime, eyes);
     const standing = this.people.show(scene, head.position.y);
-    this.#boards.show(standing, scene.paused ? 'Paused' : this.#lineNow(standing, pageTime));
+    this.#boards.show(standing, this.#lineNow(scene, standing));
     const station = me === null ? undefined : stations[ballGame.stationOf(state, me)];
     this.#ring.show(station?.position ?? null, eyes);
   }
@@ -145,7 +145,9 @@ export class BallView {
   }
 
   /** Returns the line of the board: the last event, or what the match waits for. */
-  #lineNow(standing: DisplayedMatch<BallState>, pageTime: number): string {
+  #lineNow({ paused, inRoom, pageTime }: BallScene, standing: DisplayedMatch<BallState>): string {
+    if (!inRoom) return 'No connection to the room';
+    if (paused) return 'Paused';
     const { text, until } = this.#line;
     return pageTime < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }

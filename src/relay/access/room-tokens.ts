@@ -6,7 +6,7 @@ import type { RoomKinds } from 'threepoint-rooms/room';
 import * as v from 'valibot';
 
 /** The seat and name that a study assigns to a participant; seat null: a spectator. */
-export interface AssignedPlace {
+export interface AssignedSeat {
   readonly seat: number | null;
   readonly name: string;
 }
@@ -19,8 +19,8 @@ export interface PassClaims {
   readonly kind: string;
   /** The terms of the room, if this person is the first in it. Not checked: see `allowedTerms`. */
   readonly terms: object;
-  /** The assigned place; null: a room with free choice of seats. */
-  readonly assigned: AssignedPlace | null;
+  /** The assigned seat; null: a room with free choice of seats. */
+  readonly assigned: AssignedSeat | null;
 }
 
 /** Returns the terms of a pass; null: its game does not allow them, or the server does not have the game. */
@@ -32,7 +32,7 @@ export function allowedTerms(kinds: RoomKinds, { kind, terms, assigned }: Omit<P
 
 /** Names of rooms: short, valid in an address and easy to spell out. */
 export const roomName = /^[a-z0-9][a-z0-9-]{0,31}$/;
-/** Names of rooms with assigned places; other rooms cannot have such a name. Proxies route by 32 characters at most. */
+/** Names of rooms with assigned seats; other rooms cannot have such a name. Proxies route by 32 characters at most. */
 export const assignedRoomName = /^study\.[0-9a-f]{24}$/;
 
 const lifeSeconds = 15 * 60;
@@ -42,7 +42,7 @@ const issuer = 'threepoint';
 const algorithm = 'HS256';
 const longestToken = 1024;
 
-const assignedPlace = v.nullable(
+const assignedSeat = v.nullable(
   v.strictObject({
     seat: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(maxSeats - 1))),
     name: v.string(),
@@ -97,10 +97,10 @@ export class RoomTokens {
         clockTolerance: tolerance,
       });
       const { sub: identity, room, kind, terms = {} } = payload;
-      const assigned = v.safeParse(assignedPlace, payload.assigned ?? null);
+      const assigned = v.safeParse(assignedSeat, payload.assigned ?? null);
       if (!identity || typeof room !== 'string' || typeof kind !== 'string' || !isObject(terms) || !assigned.success)
         return null;
-      // The name shows whether a room has assigned places.
+      // The name shows whether a room has assigned seats.
       const named = assigned.output ? assignedRoomName : roomName;
       return named.test(room) ? { identity, room, kind, terms, assigned: assigned.output } : null;
     } catch (error) {

@@ -102,7 +102,7 @@ export function avatarRoutes(
     await spend(uploadsFrom, network, 'upload');
     const reserved = reserve({ room, identity, address: network }, length);
     try {
-      reserved.keep(hash, await receiveFile(request, length, hash));
+      reserved.store(hash, await receiveFile(request, length, hash));
       return noContent;
     } finally {
       reserved.cancel();

@@ -12,8 +12,8 @@ interface AvatarStoreOptions {
 /** Space that is reserved for an upload. */
 export interface Reservation {
   /** Stores the uploaded file; it replaces the owner's previous file in the room. */
-  keep(hash: AvatarHash, bytes: Uint8Array): void;
-  /** Releases the space of a failed upload; does nothing after `keep`. */
+  store(hash: AvatarHash, bytes: Uint8Array): void;
+  /** Releases the space of a failed upload; does nothing after `store`. */
   cancel(): void;
 }
 
@@ -33,7 +33,7 @@ interface StoredAvatar extends AvatarOwner {
   wasWorn: boolean;
 }
 
-/** A file is kept this long [s] until its owner wears it. */
+/** A file is stored this long [s] until its owner wears it. */
 const graceSeconds = 30;
 
 /** The share of all space that one address may use, at least one file: a person can have seats in many rooms. */
@@ -89,7 +89,7 @@ export class AvatarStore {
     if (this.#bytesFrom(address) - freedHere + length > maxOfAddress) return 'crowded';
     this.#uploads.set(owner, { address, length });
     return {
-      keep: (hash, bytes) => {
+      store: (hash, bytes) => {
         this.#uploads.delete(owner);
         this.#files.set(owner, { room, identity, address, hash, bytes, storedAt: this.#options.now(), wasWorn: false });
       },

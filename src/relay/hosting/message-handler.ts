@@ -70,7 +70,7 @@ export class MessageHandler {
     hosted?.room.disconnect(id, this.#context.now());
   }
 
-  /** Disconnects a client that harms others or has no place. `because`: the label of the metric. */
+  /** Disconnects a client that harms others or whose room cannot be opened. `because`: the label of the metric. */
   kick(client: Client, reason: 'misbehaved' | 'slow' | 'full', because: string): void {
     if (client.ended) return;
     this.#context.metrics.kicked(because);
@@ -94,7 +94,7 @@ export class MessageHandler {
     hosted.clients.set(client.id, client);
     void client.socket.join(client.pass.room);
     const { identity, assigned } = client.pass;
-    // An assigned place overrides the page's request.
+    // An assigned seat overrides the page's request.
     const joining = assigned ? { ...request, ...assigned, spectate: assigned.seat === null, bot: false } : request;
     hosted.room.join(client.id, identity, joining, this.#context.now());
   }

@@ -10,7 +10,7 @@ import { type Client, disconnect, send, sendPoses } from './client';
 import { PoseSchedule, type ScheduledRoom } from './pose-schedule';
 import { createTicker, type Ticker } from './ticker';
 
-/** The public description of a room. Rooms with assigned places are not listed. */
+/** The public description of a room. Rooms with assigned seats are not listed. */
 export interface RoomListing extends Omit<RoomCensus, 'empty'> {
   readonly room: string;
   readonly kind: string;
@@ -129,7 +129,7 @@ export class RoomRegistry {
     this.#rooms.clear();
   }
 
-  /** Creates the room of a pass, whose terms it gets. Returns whether the server has the game and a place for it. */
+  /** Creates the room of a pass, whose terms it gets. Returns whether the server can open it. */
   #create({ room: id, kind, terms, assigned }: PassClaims): boolean {
     const { configuration, kinds, log, metrics } = this.#context;
     if (this.#rooms.size >= configuration.maxRooms) return false;

@@ -25,7 +25,7 @@ export interface AvatarExchange {
   /** Resolves to whether the other server has this file, which then needs no upload. */
   isStoredElsewhere(hash: AvatarHash): Promise<boolean>;
   /**
-   * Uploads a file; the server keeps it while its owner uses it on a seat. Rejects with an Error if the server refuses
+   * Uploads a file; the server stores it while its owner uses it on a seat. Rejects with an Error if the server refuses
    * it.
    */
   store(hash: AvatarHash, file: Blob): Promise<void>;

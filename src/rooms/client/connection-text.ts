@@ -15,17 +15,15 @@ const endings: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   'old-page': 'This page and the server have different versions. Reload the page.',
 };
 
-/** Returns a sentence or two about the state of the connection; null: it is fine. */
-export function bannerText({ phase, reason, retryIn }: ConnectionStatus): string | null {
+/** Returns a sentence or two about the state of the connection; null: it is fine. `seated`: the user has a seat. */
+export function bannerText({ phase, reason, retryIn }: ConnectionStatus, seated = true): string | null {
   if (phase === 'joined') return null;
   if (phase === 'ended') return reason && endings[reason];
   if (phase === 'connecting' && reason === null) return 'Joining the room …';
   const why = reason ? endings[reason] : 'The connection was lost.';
-  const then =
-    retryIn === null
-      ? 'Trying again now …'
-      : `Trying again in ${Math.max(1, Math.ceil(retryIn))} s. Your seat is kept for 30 s.`;
-  return `${why} ${then}`;
+  if (retryIn === null) return `${why} Trying again now …`;
+  const held = seated ? ' Your seat is held for 30 s.' : '';
+  return `${why} Trying again in ${Math.max(1, Math.ceil(retryIn))} s.${held}`;
 }
 
 /** A delay above the first [s] is noticeable in the game; above the second it spoils the game. */

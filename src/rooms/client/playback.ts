@@ -38,7 +38,7 @@ const fastestPlayback = 1.5;
 const freezeSeconds = 0.25;
 /** Packets further apart than this [s] are not interpolated. */
 const longestGap = 0.5;
-/** The most packets that are kept while a hidden page draws no frames. */
+/** The most packets that are stored while a hidden page draws no frames. */
 const maxSamples = 256;
 /** Half-life of the playout offset's adaptation [s]. */
 const delayHalfLife = 0.5;

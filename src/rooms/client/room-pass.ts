@@ -31,11 +31,11 @@ export function createRoomPass(
   base: string,
   room: string,
   kind: string,
-  keep?: PassStorage,
+  storage?: PassStorage,
   terms: object = {},
 ): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;
-  let token = keep?.getItem(key) ?? null;
+  let token = storage?.getItem(key) ?? null;
   let verified = false;
   return {
     async token(afresh) {
@@ -59,7 +59,7 @@ export function createRoomPass(
       }
       token = answer.token;
       verified = true;
-      keep?.setItem(key, token);
+      storage?.setItem(key, token);
       return token;
     },
   };

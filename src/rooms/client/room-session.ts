@@ -40,7 +40,7 @@ import { MatchPrediction } from './match-prediction';
 
 const poseSeconds = 1 / 30;
 
-/** The most packets, and the most events, that are kept while the page is hidden and calls no `update`. */
+/** The most packets, and the most events, that are stored while the page is hidden and calls no `update`. */
 const maxWaiting = 256;
 
 /** A page that skips more than this [s] was hidden; slow pages skip less between two frames. */

@@ -83,7 +83,7 @@ export class SharedAvatar {
       if (hash === null) throw new Error('this page is not on a secure connection (https)');
       if (file.size > maxAvatarBytes)
         throw new Error(`it has ${megabytes(file.size)}; the limit is ${megabytes(maxAvatarBytes)}`);
-      const kept = (await exchange.isStoredElsewhere(hash)) ? '' : ' The server keeps the file until you leave.';
+      const kept = (await exchange.isStoredElsewhere(hash)) ? '' : ' The server stores the file until you leave.';
       if (kept && isNewest()) await upload(exchange, hash, file);
       if (!isNewest()) return;
       send(hash);

@@ -34,7 +34,7 @@ export function RoomAvatars(props: RoomAvatarsProps): ReactElement | null {
   const [error, setError] = useState<unknown>(null);
   const live = useRef<JoinedRoom | null>(null);
   const newest = useRef(props);
-  /** Resolves when the room before was left: two connections of one page would compete for its place. */
+  /** Resolves when the room before was left: two connections of one page would compete for its seat. */
   const before = useRef(Promise.resolve());
   useEffect(() => {
     newest.current = props;

@@ -11,7 +11,7 @@ export const maxHeadSpeed = 20;
 const headTolerance = 0.1;
 /** The most packets of a seat that wait to be forwarded: more arrive together only after the host was blocked. */
 const maxWaitingPackets = 16;
-/** After this long without an accepted pose [s] any position is accepted: a device has found its place again. */
+/** After this long without an accepted pose [s] any position is accepted: a device has found its position again. */
 const speedCheckSeconds = 1;
 /** A packet's time may lie this far ahead of the room clock [s]: a sender knows that clock to half a round trip. */
 const maxLeadSeconds = 0.25;
@@ -21,7 +21,7 @@ const maxLeadSeconds = 0.25;
 const jumpsPerSecond = 1;
 const jumpsAtOnce = 4;
 
-/** Checks the pose packets of one seat, and keeps those that are not forwarded yet. Times are the room clock's [s]. */
+/** Checks the pose packets of one seat, and stores those that are not forwarded yet. Times are the room clock's [s]. */
 export class PoseValidator {
   #lastSeenAt: number;
   /** The newest packet's own time. */
@@ -61,7 +61,7 @@ export class PoseValidator {
   }
 
   /**
-   * Accepts a packet and keeps its bytes for forwarding. It rejects a packet that is older than the newest one, or in
+   * Accepts a packet and stores its bytes for forwarding. It rejects a packet that is older than the newest one, or in
    * which the head has moved faster than a person can.
    */
   accept(packet: PointsPacket, bytes: Uint8Array, time: number): 'accepted' | 'old' | 'too-fast' {

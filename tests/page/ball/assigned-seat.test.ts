@@ -1,7 +1,7 @@
 import { defaultAvatar } from 'threepoint/core';
 import { ballClientPolicy } from 'threepoint-games/ball';
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { assignedSeat } from '../../../src/page/people/match/room-place';
+import { assignedSeat } from '../../../src/page/people/match/play-room';
 import { until } from '../../relay/running-relay';
 import { visitor } from '../../rooms/client/people';
 import { invitedGroup } from '../../study/participant/invited-group';

@@ -170,7 +170,7 @@ test('a player who takes the seat of a bot with a ball puts nothing back', () =>
   expect([ann.ball(10), ann.told.happened('refused')]).toEqual(['rack', []]);
 });
 
-test('a thrower who changes places keeps no ball', () => {
+test('a thrower who changes seats keeps no ball', () => {
   const ann = court();
   ann.grab(0);
   ann.sit(1);

@@ -1,7 +1,7 @@
 import { identity, vec3 } from 'threepoint/math';
 import {
   type BallEvent,
-  type BallPlace,
+  type BallLocation,
   type BallState,
   ballRules,
   catchesOf,
@@ -105,7 +105,7 @@ describe('the board', () => {
   it('names the thrower of a ball that was caught, and counts by thrower', () => {
     const event: BallEvent = { type: 'caught', ball: 3, player: 1, at: 2, score: 1 };
     expect(eventLine(event, [null, person('ben', { station: 1 }), null])).toBe('In! Thrown by 2 · ben');
-    const balls: BallPlace[] = [
+    const balls: BallLocation[] = [
       { on: 'basket', thrower: 0 },
       { on: 'basket', thrower: 1 },
       { on: 'basket', thrower: 1 },
@@ -137,7 +137,7 @@ describe('the board', () => {
 });
 
 describe('the sheet before and after a match', () => {
-  it('offers the free places and those of bots, and ready to a seated player', () => {
+  it('offers the free seats and those of bots, and ready to a seated player', () => {
     const people = [person('ann', { me: true }), person('Max', { bot: true }), null];
     expect(lobbyButtons(ballGame, standing(people)).map(({ id }) => id)).toEqual(['seat1', 'seat2', 'option', 'ready']);
     const watcher = lobbyButtons(ballGame, standing([person('ann'), null, person('cal')], fresh, null));

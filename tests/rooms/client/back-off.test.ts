@@ -27,7 +27,10 @@ test('the banner says what is going on, and nothing when all is well', () => {
   const status = { phase: 'joined', attempt: 0, retryIn: null, reason: null } as const;
   expect(bannerText(status)).toBeNull();
   expect(bannerText({ ...status, phase: 'reconnecting', attempt: 2, retryIn: 1.2 })).toBe(
-    'The connection was lost. Trying again in 2 s. Your seat is kept for 30 s.',
+    'The connection was lost. Trying again in 2 s. Your seat is held for 30 s.',
+  );
+  expect(bannerText({ ...status, phase: 'reconnecting', attempt: 2, retryIn: 1.2 }, false)).toBe(
+    'The connection was lost. Trying again in 2 s.',
   );
   expect(bannerText({ ...status, phase: 'reconnecting', reason: 'unreachable' })).toBe(
     'The server cannot be reached. Trying again now …',

@@ -24,10 +24,10 @@ export const court = {
 /** Middle and size of a rack's tray [m]. */
 export function trayOf(side: 0 | 1, balls: number) {
   const perRack = ballsPerRack(balls);
-  const places = Array.from({ length: perRack }, (_, slot) => rackPosition(side * perRack + slot, balls));
-  const xs = places.map(({ x }) => x);
-  const zs = places.map(({ z }) => z);
+  const slots = Array.from({ length: perRack }, (_, slot) => rackPosition(side * perRack + slot, balls));
+  const xs = slots.map(({ x }) => x);
+  const zs = slots.map(({ z }) => z);
   const middle = (values: readonly number[]) => (Math.min(...values) + Math.max(...values)) / 2;
   const spread = (values: readonly number[]) => Math.max(...values) - Math.min(...values);
-  return { x: middle(xs), z: middle(zs), width: spread(xs) + 0.2, depth: spread(zs) + 0.2, y: places[0]?.y ?? 0.925 };
+  return { x: middle(xs), z: middle(zs), width: spread(xs) + 0.2, depth: spread(zs) + 0.2, y: slots[0]?.y ?? 0.925 };
 }

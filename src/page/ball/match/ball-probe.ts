@@ -1,5 +1,5 @@
 import { length } from 'threepoint/math';
-import { type BallConnection, type BallPlace, ballsLeft, catchesOf } from 'threepoint-games/ball';
+import { type BallConnection, type BallLocation, ballsLeft, catchesOf } from 'threepoint-games/ball';
 import type { BallFrame } from './ball-frame';
 
 /** Returns the state of a match as plain data, for tests and tools. */
@@ -7,7 +7,7 @@ export function probeOf(
   { state, secondsLeft, me, role, spectators, paused, held, aim, players, opening }: BallFrame,
   connection: BallConnection,
 ) {
-  const count = (on: BallPlace['on']) => state.balls.filter((place) => place.on === on).length;
+  const count = (on: BallLocation['on']) => state.balls.filter((location) => location.on === on).length;
   const { x, y, z } = opening?.position ?? state.basket.position;
   return {
     name: 'ball' as const,
@@ -33,7 +33,7 @@ export function probeOf(
     voided: connection.room?.voidedRounds ?? 0,
     /** How often the room has taken this page in: once, and again after each connection that was lost. */
     welcomes: connection.room?.welcomeCount ?? 0,
-    /** How many balls are in each kind of place. */
+    /** How many balls are at each kind of location. */
     balls: {
       rack: count('rack'),
       hand: count('hand'),

@@ -28,7 +28,7 @@ const refusals: Partial<Readonly<Record<Refusal, string>>> = {
   speed: 'That was faster than an arm can throw',
 };
 
-/** What an event sounds like, in words and, where it has a place, with its direction; null: nothing. */
+/** What an event sounds like, in words and, where it has a position, with its direction; null: nothing. */
 export function eventCaption(event: BallEvent, at: Vec3 | null, listener: Listener): string | null {
   const where = at ? `, ${directionText(listener.head, at)}` : '';
   switch (event.type) {

@@ -70,8 +70,8 @@ export function soundPosition(event: BallEvent, state: BallState): Vec3 | null {
     case 'rolls':
       return event.launch.position;
     case 'missed': {
-      const place = state.balls[event.ball];
-      return place?.on === 'air' || place?.on === 'floor' ? place.launch.position : null;
+      const location = state.balls[event.ball];
+      return location?.on === 'air' || location?.on === 'floor' ? location.launch.position : null;
     }
     case 'caught':
       return headOfStation(holderStation);

@@ -26,7 +26,7 @@ import {
 } from 'threepoint/math';
 import type { GazeTargets } from 'threepoint/three';
 import {
-  type BallPlace,
+  type BallLocation,
   type BallState,
   ballPosition,
   ballRadius,
@@ -175,19 +175,19 @@ export class Balls {
     this.#perRack = ballsPerRack(state.options.balls);
     let caught = 0;
     for (let ball = 0; ball < state.balls.length; ball++) {
-      const place = state.balls[ball]!;
+      const location = state.balls[ball]!;
       let position: Vec3 | null;
-      if (place.on === 'hand') position = inHand(place.player, place.side);
-      else if (place.on === 'basket') {
+      if (location.on === 'hand') position = inHand(location.player, location.side);
+      else if (location.on === 'basket') {
         position = opening && caught < maxInBasket ? this.#inBasket(caught, opening) : null;
         caught += 1;
       } else position = ballPosition(state, ball, time);
       // The event of the catch arrives later: until then the ball stays in the basket.
-      if (place.on === 'air' && !place.missed && position && opening)
-        position = stopInBasket(opening, position, place.launch.time, this.#approaches[ball]!);
-      const attracts = place.on === 'air' || place.on === 'hand';
+      if (location.on === 'air' && !location.missed && position && opening)
+        position = stopInBasket(opening, position, location.launch.time, this.#approaches[ball]!);
+      const attracts = location.on === 'air' || location.on === 'hand';
       copyVec3((attracts && position) || nowhere, this.#attracting[ball]!);
-      if (position) this.#put(ball, place, position, time);
+      if (position) this.#put(ball, location, position, time);
       else this.#hide(ball);
     }
     for (const mesh of this.#meshes) mesh.instanceMatrix.needsUpdate = true;
@@ -210,10 +210,10 @@ export class Balls {
     return { x: at.x, y: at.y, z: at.z };
   }
 
-  #put(ball: number, place: BallPlace, position: Vec3, time: number): void {
-    this.#setTurn(ball, place, position, time);
+  #put(ball: number, location: BallLocation, position: Vec3, time: number): void {
+    this.#setTurn(ball, location, position, time);
     this.#setMatrix(ball, this.#matrix.compose(this.#at.copy(position), this.#turn, one));
-    if (place.on === 'air' || place.on === 'floor') this.#shadows.put(ball, position);
+    if (location.on === 'air' || location.on === 'floor') this.#shadows.put(ball, position);
     else this.#shadows.hide(ball);
   }
 
@@ -227,14 +227,14 @@ export class Balls {
   }
 
   /** Rotates a ball. Each resting ball has its own rotation; a moving one turns around the axis across its path. */
-  #setTurn(ball: number, place: BallPlace, position: Vec3, time: number): void {
+  #setTurn(ball: number, location: BallLocation, position: Vec3, time: number): void {
     const axis = this.#axis;
     this.#turn.setFromAxisAngle(axis.set(0.6, 0.2, 0.77).normalize(), ball * 1.9);
-    if (place.on !== 'air' && place.on !== 'floor') return;
-    const { velocity } = place.launch;
+    if (location.on !== 'air' && location.on !== 'floor') return;
+    const { velocity } = location.launch;
     axis.set(velocity.z, 0, -velocity.x);
     if (axis.lengthSq() < 1e-6) return;
-    const angle = turnedBy(place.on, place.launch, time, position);
+    const angle = turnedBy(location.on, location.launch, time, position);
     this.#turn.premultiply(this.#rolled.setFromAxisAngle(axis.normalize(), angle));
   }
 }

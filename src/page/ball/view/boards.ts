@@ -60,7 +60,7 @@ export function createBoards(quality: Quality) {
     object,
     show(match: DisplayedMatch<BallState>, line: string): void {
       const { state, seconds } = match;
-      const left = state.balls.map((place) => place.on + (place.on === 'air' && place.missed ? 'x' : ''));
+      const left = state.balls.map((location) => location.on + (location.on === 'air' && location.missed ? 'x' : ''));
       const key = JSON.stringify([state.score, seconds, state.phase, state.end, state.options, left, line]);
       if (key === shown) return;
       shown = key;

@@ -34,7 +34,7 @@ import { MatchCamera, type MatchScenes } from './match-camera';
 import type { MatchFrame, SeatFrame } from './match-frame';
 import type { MatchPlay, MatchPlayOptions } from './match-play';
 import { createOtherBodies } from './other-bodies';
-import { type RoomPlace, roomFor } from './room-place';
+import { type PlayRoom, roomFor } from './play-room';
 import type { SeatedGame } from './seated-game';
 
 /** One frame of a match as its view draws it. */
@@ -48,7 +48,7 @@ export type MatchScene<Game extends HostedGame, Frame extends MatchFrame<Game>> 
 export interface MatchView<Game extends HostedGame, Frame extends MatchFrame<Game>> {
   readonly people: PeopleView<Game>;
   readonly sound: AudibleStage;
-  /** Returns the place of the game for the user's floor frame; called after every change of the seat. */
+  /** Returns the surroundings of the game in the user's floor frame; called after every change of the seat. */
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
   /** Shows or hides the boards. A phone's window is covered by the bar, which has their figures. */
   showBoards?(visible: boolean): void;
@@ -73,7 +73,7 @@ export interface MatchParts<Game extends HostedGame, Frame extends MatchFrame<Ga
 /** What a match is opened with: the page, the room, and the file of the body that other players have. */
 export interface MatchOpening<Game extends HostedGame> {
   readonly context: ActivityContext;
-  readonly room: RoomPlace<Game>;
+  readonly room: PlayRoom<Game>;
   readonly mannequin: ArrayBuffer;
 }
 
@@ -82,7 +82,7 @@ const none: readonly never[] = [];
 const noticeSeconds = 8;
 const voidedNotice = 'The server was restarted, so this round does not count. You can start a new one.';
 
-/** A game of several people in the page: its place, the other players' bodies, and the user's part in the match. */
+/** A game of several people in the page: surroundings, the other players' bodies, and the user's part in the match. */
 export abstract class MatchActivity<
   Game extends HostedGame,
   Frame extends MatchFrame<Game> = MatchFrame<Game>,
@@ -254,7 +254,11 @@ export abstract class MatchActivity<
 
   banner(): string | null {
     const notice = this.#notice;
-    return bannerText(this.play.status) ?? (notice && this.#now < notice.until ? notice.text : null);
+    const { status, room } = this.play;
+    return (
+      bannerText(status, room !== null && room.mySeat !== null) ??
+      (notice && this.#now < notice.until ? notice.text : null)
+    );
   }
 
   createPanel(): ActivityPanel {
@@ -304,7 +308,7 @@ export abstract class MatchActivity<
     return this.play.status.phase === 'joined';
   }
 
-  /** Turns the place of the game around the user, after every change of seat. */
+  /** Turns the surroundings of the game around the user, after every change of seat. */
   #place(): void {
     const at = this.play.floorFromArena;
     if (at === this.#placedAt) return;

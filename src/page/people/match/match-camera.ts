@@ -9,7 +9,7 @@ import type { MatchPlay } from './match-play';
 export interface MatchScenes {
   /** The view past a player to the others. */
   readonly player: CameraScene;
-  /** The whole place, for a spectator. */
+  /** The view of the whole surroundings, for a spectator. */
   readonly spectator: CameraScene;
   /** The point that a spectator's camera looks at first, floor frame [m]. */
   readonly middle: Vec3;

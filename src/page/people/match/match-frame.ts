@@ -8,7 +8,7 @@ export interface SeatFrame {
   readonly bot: boolean;
   readonly presence: 'here' | 'away' | 'gone';
   readonly me: boolean;
-  /** The number of the place in the game: it has the role and the look. */
+  /** The number of the station in the game, which has the role and the look. */
   readonly station: number;
   readonly ready: boolean;
   /** The position of the head, arena frame; null: it is not visible now. */

@@ -18,8 +18,8 @@ function drawInvitation(context: CanvasRenderingContext2D, { room, address, limi
   }
   drawText(context, `Room ${room}`, [menuMargin, 732], { font: '650 52px', color: ink, baseline, maxWidth: fullWidth });
   // An address has no spaces: it is broken before its query.
-  const [place = address, query] = address.split(/(?=\?)/);
-  for (const [index, line] of [place, query ?? ''].entries()) {
+  const [page = address, query] = address.split(/(?=\?)/);
+  for (const [index, line] of [page, query ?? ''].entries()) {
     const at = [menuMargin, 794 + index * 46] as const;
     drawText(context, line, at, { font: '500 34px', color: ink, baseline, maxWidth: fullWidth });
   }

@@ -26,7 +26,7 @@ export interface PlayersSheetActions {
   close(): void;
 }
 
-/** The buttons of one player, at the same place in every row. */
+/** The buttons of one player, at the same position in every row. */
 function playerButtons(player: OtherPlayer, row: number, actions: PlayersSheetActions): readonly MenuButton[] {
   const { seat, silenced, hidden, muting } = player;
   const top = playersTop + row * playerHeight + buttonsTop;

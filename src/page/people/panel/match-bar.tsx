@@ -58,7 +58,7 @@ interface MatchBarProps {
 /** This page is no longer in the room. */
 const isOut = (round: MatchRound | null): boolean => (round?.ended ?? null) !== null;
 
-/** Before and after a match, while another person could take a place. */
+/** Before and after a match, while another person could take a seat. */
 const isWaitedFor = (round: MatchRound | null): boolean =>
   round !== null && !isOut(round) && round.phase !== 'running' && round.people.some(({ free }) => free);
 
@@ -79,7 +79,7 @@ const Players = ({ game, actions, state: { round, bots, sound, name, defaultName
         onChange={({ currentTarget }) => actions.setName(currentTarget.value)}
       />
     </label>
-    {game.bots && <Toggle label="Bots take free places" on={bots} set={actions.setBots} />}
+    {game.bots && <Toggle label="Bots take free seats" on={bots} set={actions.setBots} />}
     {game.option && (
       <Toggle
         label={game.option.label}
@@ -94,12 +94,12 @@ const Players = ({ game, actions, state: { round, bots, sound, name, defaultName
 
 /** Describes the room, the user's role and the quality of the connection. */
 function whereText({ round, room }: MatchBarState): string {
-  const place = room ? `Room “${room}”` : 'Your own room';
-  if (!round) return `${place} · joining …`;
+  const name = room ? `Room “${room}”` : 'Your own room';
+  if (!round) return `${name} · joining …`;
   // A spectator counts among the spectators, and knows that already.
   const watchers = round.spectators - (round.seat === null ? 1 : 0);
   const watching = watchers > 0 ? `${watchers} ${round.seat === null ? 'more ' : ''}watching` : null;
-  return [place, round.role, watching, round.connection].filter(Boolean).join(' · ');
+  return [name, round.role, watching, round.connection].filter(Boolean).join(' · ');
 }
 
 /** The score, what is left to play, and the time. */
@@ -154,14 +154,14 @@ function Buttons({ actions, state: { round, readyByItself, mouse } }: Omit<Match
   );
 }
 
-/** The places that are free, and for a spectator the players to follow. */
+/** The seats that are free, and for a spectator the players to follow. */
 function Seats({ actions, state: { round, following } }: Omit<MatchBarProps, 'game'>) {
   const free = round && round.phase !== 'running' ? round.people.filter((person) => person.free) : [];
   const followed = round?.seat === null ? otherPlayers(round, false) : null;
   return (
     <>
       {free.length > 0 && (
-        <Group label="Places" class="places">
+        <Group label="Seats" class="seats">
           {free.map(({ seat, role }) => (
             <Button
               key={seat}
@@ -217,7 +217,7 @@ function Company({ game, actions, state: { room, server, round } }: MatchBarProp
   );
 }
 
-/** Score, places and settings of a match. */
+/** Score, seats and settings of a match. */
 export function MatchBar({ game, actions, state }: MatchBarProps) {
   const { round } = state;
   const sentence = round?.ended ?? round?.waiting ?? null;

@@ -23,18 +23,18 @@ export const seatOfButton = (id: LobbyButton): number | null => (id.startsWith('
 const byStation = <Game extends HostedGame>({ stationOf }: SeatedGame<Game>, state: Game['state']): readonly number[] =>
   state.players.map((_, player) => player).sort((a, b) => stationOf(state, a) - stationOf(state, b));
 
-/** Returns the buttons for the reader: a place for each seat that is free or a bot's, the option, and ready. */
+/** Returns the buttons for the reader: one for each seat that is free or a bot's, the option, and ready. */
 export function lobbyButtons<Game extends HostedGame>(
   game: SeatedGame<Game>,
   { state, players, me }: DisplayedMatch<Game['state']>,
 ): readonly SheetButton<LobbyButton>[] {
-  const places = byStation(game, state).flatMap((player, row): SheetButton<LobbyButton>[] => {
+  const seats = byStation(game, state).flatMap((player, row): SheetButton<LobbyButton>[] => {
     const person = players[player];
     if (player === me || (person && !person.bot)) return [];
     return [{ id: `seat${player}`, x: 690, y: rowTop + row * rowHeight + 10, width: 270, height: rowHeight - 24 }];
   });
-  if (me === null) return places;
-  return game.option ? [...places, optionButton, readyButton] : [...places, readyButton];
+  if (me === null) return seats;
+  return game.option ? [...seats, optionButton, readyButton] : [...seats, readyButton];
 }
 
 /** The sheet before and after a match of a game for at most three players: players, who is ready, the result. */
@@ -111,7 +111,7 @@ export class LobbySheet<Game extends HostedGame> {
       this.#paintButton(context, match, button, hovered === button.id);
     if (me === null) {
       const isFree = players.some((person) => person === null || person.bot);
-      const text = isFree ? 'You are watching. Take a place to play.' : 'You are watching.';
+      const text = isFree ? 'You are watching. Take a seat to play.' : 'You are watching.';
       middle(text, 796, { font: '600 42px', color: ink.soft, baseline: 'middle' });
     }
   }

@@ -126,7 +126,7 @@ export const AvatarPage = ({ state, actions }: PanelPageProps) => (
         set={(shareAvatar) => actions.keep({ shareAvatar })}
       />
       <p class="hint">
-        The file may have up to 20 MB. The server keeps it for the people in the room until you leave. In a study all
+        The file may have up to 20 MB. The server stores it for the people in the room until you leave. In a study all
         avatars are alike.
       </p>
       <Toggle

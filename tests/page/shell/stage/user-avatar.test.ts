@@ -71,15 +71,19 @@ const unknownNames = (name: string) => {
 
 function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.resolve(), boneMaps = noBones()) {
   const told: string[] = [];
+  const withdrawn: string[] = [];
   const tracker = createTracker();
   const parts = fake<SessionParts>({
     tracker,
     settings: { palette: 'own', upperBodyOnly: false, builtInBody: 'woman', skinTone: undefined },
-    notices: { show: (_: unknown, text: string) => void told.push(text), withdraw: () => undefined },
+    notices: {
+      show: (_: unknown, text: string) => void told.push(text),
+      withdraw: (of: string) => void withdrawn.push(of),
+    },
     onChange: () => undefined,
   });
   const avatar = new UserAvatar(parts, new AvatarLoader(boneMaps, prepare));
-  return { avatar, told, tracker };
+  return { avatar, told, withdrawn, tracker };
 }
 
 describe('several files requested in turn', () => {
@@ -107,6 +111,15 @@ describe('several files requested in turn', () => {
     await first;
     expect(avatar.waiting?.name).toBe('second.glb');
   });
+});
+
+test('a body that is shown withdraws the notice about one that could not be', async () => {
+  checkFilesHere();
+  const { avatar, told, withdrawn } = wardrobe();
+  expect(await avatar.open(unknownNames('first.glb'))).toBe(false);
+  expect([told.length, withdrawn]).toEqual([1, []]);
+  expect(await avatar.openBuiltIn(bytes())).toBe(true);
+  expect(withdrawn).toEqual(['avatar']);
 });
 
 test('a body from a file that reaches the graphics device only in part leaves nothing there', async () => {

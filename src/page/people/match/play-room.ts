@@ -13,8 +13,8 @@ import type { ActivityContext } from '../../activity/activity-context';
 import type { SeatedGame } from './seated-game';
 
 /** A room to play in. */
-export interface RoomPlace<Game extends HostedGame> {
-  /** Makes one visitor's place in the room; `time`: the page's clock [s]. */
+export interface PlayRoom<Game extends HostedGame> {
+  /** Connects a visitor to the room; `time`: the page's clock [s]. */
   connect(visitor: Visitor, time: number): Connection<Game>;
   /** The exchange of the players' avatar files; null: avatars are not exchanged. */
   readonly avatars: AvatarExchange | null;
@@ -32,7 +32,7 @@ export async function assignedSeat<Game extends HostedGame>(
   policy: ClientPolicy<Game>,
   seat: () => Promise<SignedSeat>,
   clock: LocalClock,
-): Promise<RoomPlace<Game>> {
+): Promise<PlayRoom<Game>> {
   const [{ RoomAddress }, first] = await Promise.all([import('threepoint-rooms/socket'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
   const address = new RoomAddress(policy, { url: pageFolder(), room: first.room, clock, pass });
@@ -45,7 +45,7 @@ async function sharedRoom<Game extends HostedGame>(
   room: string,
   terms: object,
   clock: LocalClock,
-): Promise<RoomPlace<Game>> {
+): Promise<PlayRoom<Game>> {
   const { RoomAddress, tabStorage } = await import('threepoint-rooms/socket');
   const storage = tabStorage();
   const url = pageFolder();
@@ -62,7 +62,7 @@ async function sharedRoom<Game extends HostedGame>(
 export async function roomFor<Game extends HostedGame>(
   game: SeatedGame<Game>,
   { place, switches, clock, server, layout }: ActivityContext,
-): Promise<RoomPlace<Game>> {
+): Promise<PlayRoom<Game>> {
   if (place) return assignedSeat(game.policy, place.seat, clock);
   // A server that does not answer now may answer later. Without a server the match is in this page.
   const terms = game.terms(switches);
