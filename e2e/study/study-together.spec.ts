@@ -126,7 +126,7 @@ function rowsIn(zip: Uint8Array, name: string): readonly Readonly<Record<string,
   return rows.map((cells) => Object.fromEntries(heads.map((head, index) => [head, cells[index] ?? ''])));
 }
 
-test('a session of three with a reload, a lost network, a void and a withdrawal is true in its tables @nightly', async ({
+test('three participants’ tables state a reload, a lost network, a void and a withdrawal @nightly', async ({
   browser,
   origin,
 }) => {
