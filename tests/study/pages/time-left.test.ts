@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import type { ParticipantState } from '../../../src/study/model/progress/study-api';
-import { shownParticipants } from '../../../src/study/pages/experimenter/participant-row';
+import { timeLeft } from '../../../src/study/pages/experimenter/time-left';
 import { paperPlan } from '../model/studies';
 
 const plan = paperPlan();
@@ -17,10 +17,8 @@ const stateOf = (participant: string, remainingSeconds: number, silence: number,
   },
 });
 
-const shown = (states: readonly ParticipantState[]) => {
-  const study = { plan, version: 1, versions: [], simulated: false, createdAt: 0, retentionUntil: 0, states };
-  return shownParticipants({ ...study, receivedAt: 0, receipts: [] }, 0).map(({ remaining }) => remaining);
-};
+const shown = (states: readonly ParticipantState[]) =>
+  states.map((state) => timeLeft(states, scheduleFor(plan, state.participant), state));
 
 test('one match has one clock in the table, that of the page that reported last', () => {
   const [first, second, third] = members;
