@@ -32,8 +32,11 @@ async function play(group: Group, longest = 300): Promise<void> {
   expect(group.isOver).toBe(true);
 }
 
+type Row = Readonly<Record<'participant' | 'absences' | 'excluded' | 'event' | 'text' | 'ended', string>> &
+  Readonly<Record<'attempt' | 'seconds' | 'second' | 'absent_seconds', number>> & { readonly from: number | null };
+
 const rowsOf = (group: Group, plan: StudyPlan, name: string) =>
-  (studyTables(group.records, plan).find((table) => table.name === name)?.rows ?? []) as Record<string, never>[];
+  (studyTables(group.records, plan).find((table) => table.name === name)?.rows ?? []) as unknown as readonly Row[];
 
 const trialRows = (group: Group, plan: StudyPlan) => rowsOf(group, plan, 'trials');
 
