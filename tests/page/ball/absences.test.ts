@@ -178,7 +178,15 @@ test('random absences of three leave rows that state what was played and what wa
     expect([...rows, ...missed].map(({ participant }) => participant).toSorted()).toEqual(['P01', 'P02', 'P03']);
     expect(new Set(rows.map((row) => row.absences)).size).toBe(1);
     expect(trialProblems(group.records, plan)).toEqual([]);
+    const events = rowsOf(group, plan, 'events').filter(({ event }) => event === 'absence');
+    for (const { participant } of rows) {
+      const own = events.filter((row) => row.participant === participant);
+      expect(new Set(own.map(({ text }) => text)).size).toBe(own.length);
+    }
     for (const row of rows) {
+      for (const text of row.absences.split('; ').filter(Boolean)) {
+        expect(events.some((event) => event.participant === row.participant && event.text === text)).toBe(true);
+      }
       const [seconds, absent, from] = [Number(row.seconds), Number(row.absent_seconds), Number(row.from ?? 0)];
       // What was played and what was waited make up the time on the wall.
       expect(from + seconds + absent).toBeGreaterThan((group.wallSeconds ?? 0) - 1);
