@@ -2,8 +2,8 @@ import { isPlayed, type Schedule } from '../../model/plan/schedule';
 import type { ParticipantState } from '../../model/progress/study-api';
 
 /**
- * Returns the seconds left of a participant's step; in a match of a group those of the page that reported last, the same
- * for all. null: the step has no limit.
+ * Returns the seconds left of a participant's step; in a match of a group those of the page that reported last, for all
+ * alike. null: the step has no limit.
  */
 export function timeLeft(
   states: readonly ParticipantState[],
