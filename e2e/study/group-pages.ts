@@ -1,8 +1,7 @@
 import type { Browser, Page } from '@playwright/test';
 import { drawSeldom } from '../draw-seldom';
-import { type EmulatedHeadset, emulatedHeadset } from '../emulated-headset';
 import { enterVr } from '../page-fixture';
-import { calibrate, consentAndFillIn, press, reaches, stretched } from './study-participant';
+import { calibrate, consentAndFillIn, headsetOf, press, reaches, stretched } from './study-participant';
 import { experimenter } from './study-server';
 
 export const people = ['P01', 'P02', 'P03'] as const;
@@ -15,12 +14,6 @@ export const rest = (page: Page, resting: boolean): Promise<void> =>
   page.evaluate((on) => {
     window.resting = on;
   }, resting);
-
-/** Puts the headset on; clocks that one relay keeps together cannot be driven. */
-async function wearHeadset(page: Page): Promise<EmulatedHeadset> {
-  await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
-  return emulatedHeadset(page);
-}
 
 /**
  * Opens the pages of a group, each in its own context, and leads them to the sheet before the first match, where they
@@ -49,8 +42,9 @@ export async function openGroup(
   // One after the other: three pages that load at once keep each other waiting.
   for (const [index, page] of pages.entries()) {
     await page.goto(await experimenter(origin).link(study, people[index] as string, '&emulate&quality=low'));
-    const headset = await wearHeadset(page);
+    const headset = await headsetOf(page);
     await consentAndFillIn(page);
+    // Clocks that one relay keeps together cannot be driven.
     await enterVr(page, { stepMs: null });
     await headset.place(stretched);
     await calibrate(page);
@@ -63,7 +57,7 @@ export async function openGroup(
 /** Loads a page again in the middle of a match, and leads it back to the sheet on which the match goes on. */
 export async function loadAgain(page: Page): Promise<void> {
   await page.reload();
-  const headset = await wearHeadset(page);
+  const headset = await headsetOf(page);
   await enterVr(page, { stepMs: null });
   await headset.place(stretched);
   await reaches(page, 'trial-ready', 60_000);

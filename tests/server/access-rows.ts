@@ -135,6 +135,7 @@ export type TermRole = 'stranger' | 'study';
 export const termValues: Readonly<Record<string, { inside: readonly unknown[]; outside: readonly unknown[] }>> = {
   seconds: { inside: [1, 45.5, 3600], outside: [0, 3600.5, -90, '90', null, [90]] },
   balls: { inside: [1, 20], outside: [0, 21, 2.5, '6', null] },
+  waitSeconds: { inside: [1, 60, 3600], outside: [0, 3600.5, '60', null] },
   pausable: { inside: [true, false], outside: [null] },
   assigned: { inside: [true, false], outside: [null] },
   voices: { inside: [true, false], outside: [null] },

@@ -38,8 +38,8 @@ export class AbsenceLog {
   }
 
   /**
-   * Takes into account which seats are absent while the clock stands. Returns whether the match has waited too long, which
-   * ends the absence.
+   * Takes into account which seats are absent while the clock stands. Returns whether the match has waited too long,
+   * which ends the absence.
    */
   follow(absent: readonly number[], { time, at, isHeld }: Moment): boolean {
     const open = this.#open;

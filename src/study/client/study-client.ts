@@ -152,7 +152,7 @@ export function createWithdrawalClient(server: string) {
   return {
     /** Returns the public part of the study. */
     study: (study: string): Promise<PublicStudy> => answer(pathOf(study)),
-    /** Deletes everything, or only the recordings, of the participant who has this code, in any notation of the code. */
+    /** Deletes everything, or only the recordings, of the participant with this code, in any notation of the code. */
     withdraw: (study: string, code: string, only?: 'motion'): Promise<Receipt> =>
       answer(`${pathOf(study)}/withdraw`, { method: 'POST', body: { code, ...(only && { only }) } }),
   };

@@ -1,28 +1,13 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { trialProblems } from '../../../src/study/cli/verify/trial-rules';
-import type { AbsenceRule, StudyPlan } from '../../../src/study/model/plan/plan';
-import { studyTables } from '../../../src/study/model/tables/study-tables';
 import { cases } from '../../nightly';
-import { paperPlan } from '../../study/model/studies';
+import { type GroupPlan, groupPlan, rowsOf, trialProblems } from '../../study/model/group-sessions';
 import { groupOfPages } from './group-of-pages';
 
 const matchSeconds = 15;
 const waitSeconds = 10;
 
-/** The paper's study with short ball matches and without practice. */
-function planWhere(after: AbsenceRule['after']): StudyPlan {
-  const plan = paperPlan();
-  const tasks = plan.tasks
-    .filter(({ id }) => id === 'ball')
-    .map((task) => ({
-      ...task,
-      trialSeconds: matchSeconds,
-      tutorial: { ...task.tutorial, when: 'never' as const },
-      absence: { waitSeconds, after },
-    }));
-  return { ...plan, participants: 3, tasks };
-}
+const planWhere = (after: 'repeat' | 'end') => groupPlan(matchSeconds, { waitSeconds, after });
 
 type Group = Awaited<ReturnType<typeof groupOfPages>>;
 
@@ -32,10 +17,7 @@ async function play(group: Group, longest = 300): Promise<void> {
   expect(group.isOver).toBe(true);
 }
 
-const rowsOf = (group: Group, plan: StudyPlan, name: string) =>
-  (studyTables(group.records, plan).find((table) => table.name === name)?.rows ?? []) as Record<string, never>[];
-
-const trialRows = (group: Group, plan: StudyPlan) => rowsOf(group, plan, 'trials');
+const trialRows = ({ records }: Group, plan: GroupPlan) => rowsOf(records, plan, 'trials');
 
 describe('a match of a group in a study', () => {
   test('waits for a page that is loaded again, and counts for the others alone', async () => {
@@ -62,7 +44,7 @@ describe('a match of a group in a study', () => {
     }
     expect(new Set(rows.map(({ absences }) => absences)).size).toBe(1);
     expect(trialProblems(group.records, plan)).toEqual([]);
-    const absences = rowsOf(group, plan, 'events').filter(({ event }) => event === 'absence');
+    const absences = rowsOf(group.records, plan, 'events').filter(({ event }) => event === 'absence');
     expect(absences.map(({ participant }) => participant)).toEqual(group.pages.map((one) => one.participant));
     expect(new Set(absences.map(({ second, seconds }) => `${second} ${seconds}`)).size).toBe(1);
   });
@@ -95,7 +77,7 @@ describe('a match of a group in a study', () => {
     expect(rows.map(({ excluded, absences, attempt }) => [excluded, absences, attempt])).toEqual(
       [1, 2, 3].map(() => ['', '', 2]),
     );
-    const texts = rowsOf(group, plan, 'events').map(({ event, text }) => `${event} ${text}`);
+    const texts = rowsOf(group.records, plan, 'events').map(({ event, text }) => `${event} ${text}`);
     expect(texts.filter((text) => text.endsWith('given up'))).toHaveLength(2);
     expect(texts.filter((text) => text.startsWith('interrupted'))).toHaveLength(3);
   });
@@ -132,7 +114,7 @@ const randomAbsence: fc.Arbitrary<RandomAbsence> = fc.record({
 });
 
 /** Plays a match with these absences, one after another or overlapping. */
-async function playWith(plan: StudyPlan, absences: readonly RandomAbsence[]): Promise<Group> {
+async function playWith(plan: GroupPlan, absences: readonly RandomAbsence[]): Promise<Group> {
   const group = await groupOfPages(plan);
   await group.pass(2);
   const due: { readonly at: number; readonly seat: number; readonly kind: RandomAbsence['kind'] }[] = [];
@@ -170,12 +152,20 @@ test('random absences of three leave rows that state what was played and what wa
     const plan = planWhere('repeat');
     const group = await playWith(plan, absences);
     const rows = trialRows(group, plan);
-    const missed = rowsOf(group, plan, 'events').filter(({ event }) => event === 'missed');
+    const missed = rowsOf(group.records, plan, 'events').filter(({ event }) => event === 'missed');
     // Each page leaves one row of the match that was played to its end, unless it was away then.
     expect([...rows, ...missed].map(({ participant }) => participant).toSorted()).toEqual(['P01', 'P02', 'P03']);
     expect(new Set(rows.map((row) => row.absences)).size).toBe(1);
     expect(trialProblems(group.records, plan)).toEqual([]);
+    const events = rowsOf(group.records, plan, 'events').filter(({ event }) => event === 'absence');
+    for (const { participant } of rows) {
+      const own = events.filter((row) => row.participant === participant);
+      expect(new Set(own.map(({ text }) => text)).size).toBe(own.length);
+    }
     for (const row of rows) {
+      for (const text of row.absences.split('; ').filter(Boolean)) {
+        expect(events.some((event) => event.participant === row.participant && event.text === text)).toBe(true);
+      }
       const [seconds, absent, from] = [Number(row.seconds), Number(row.absent_seconds), Number(row.from ?? 0)];
       // What was played and what was waited make up the time on the wall.
       expect(from + seconds + absent).toBeGreaterThan((group.wallSeconds ?? 0) - 1);

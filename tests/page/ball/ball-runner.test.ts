@@ -84,7 +84,8 @@ async function group({ stopped = false } = {}) {
         open: async () => court,
         leave: () => play.leave(),
       });
-      const place = { participant, members: people, seconds, seat: async () => ({ room: 'here', token: '' }) };
+      const seatAt = async () => ({ room: 'here', token: '' });
+      const place = { participant, members: people, seconds, seat: seatAt, afterAbsence: 'repeat' } as const;
       await runner.prepare(place);
       const estimator = createEstimator('ik', defaultCalibration);
       let timeFrame: (() => void) | null = null;

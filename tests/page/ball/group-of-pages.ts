@@ -2,14 +2,16 @@ import { allReleased, type Buttons } from 'threepoint/core';
 import { ballTask } from '../../../src/page/ball/ball-task';
 import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { createMatchRunner } from '../../../src/page/people/match/match-runner';
-import { absenceRuleOf, type StudyPlan } from '../../../src/study/model/plan/plan';
-import { isPlayed, scheduleFor } from '../../../src/study/model/plan/schedule';
-import type { ProgressEvent } from '../../../src/study/model/progress/apply-event';
-import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { LossyWire } from '../../rooms/client/lossy-wire';
 import { fists, holding, opening, releaseOf, shownAt, visitor } from '../../rooms/client/people';
 import { createTestRoom } from '../../rooms/room/test-room';
-import { session } from '../../study/model/studies';
+import {
+  type GroupPlan,
+  type GroupRecord,
+  type GroupSession,
+  groupIn,
+  groupSession,
+} from '../../study/model/group-sessions';
 import { trialOf } from '../../study/participant/played-trial';
 import { activityServices } from '../activity-services';
 
@@ -25,10 +27,10 @@ const startsAfter = 1;
 /** A page of a participant of the group, from the sheet before the match to the step after it. */
 class GroupPage {
   readonly participant: string;
-  readonly #plan: StudyPlan;
+  readonly #plan: GroupPlan;
   readonly #room: ReturnType<typeof createTestRoom>;
   readonly #seat: number;
-  readonly #session: ReturnType<typeof session>;
+  readonly #session: GroupSession;
   readonly #step: string;
   #pages = 0;
   #wire!: LossyWire;
@@ -40,23 +42,21 @@ class GroupPage {
 
   /** `othersAreOver`: whether another of the group has gone on from the trial. */
   constructor(
-    plan: StudyPlan,
+    plan: GroupPlan,
     participant: string,
     room: ReturnType<typeof createTestRoom>,
     private readonly othersAreOver: () => boolean,
   ) {
-    const schedule = scheduleFor(plan, participant);
     this.#plan = plan;
     this.participant = participant;
     this.#room = room;
-    this.#seat = schedule.groups.ball?.members.indexOf(participant) ?? 0;
-    this.#session = session(schedule);
-    this.#session.doUntil((step) => step.kind === 'trial');
+    this.#seat = groupIn(plan).members.indexOf(participant);
+    this.#session = groupSession(plan, participant);
     this.#step = this.#session.step.id;
     this.#open();
   }
 
-  get records(): readonly StudyRecord[] {
+  get records(): readonly GroupRecord[] {
     return this.#session.records;
   }
 
@@ -154,38 +154,33 @@ class GroupPage {
       open: async () => ({ play }),
       leave: () => play.leave(),
     });
-    const { members = [] } = scheduleFor(this.#plan, this.participant).groups.ball ?? {};
-    const task = this.#plan.tasks.find(({ id }) => id === 'ball');
+    const { task, members, after } = groupIn(this.#plan);
     void this.#runner.prepare({
-      ...{ participant: this.participant, members, seconds: task?.trialSeconds ?? 0 },
+      ...{ participant: this.participant, members, seconds: task.trialSeconds },
       seat: async () => ({ room: 'here', token: '' }),
-      afterAbsence: absenceRuleOf(task ?? {}).after,
+      afterAbsence: after,
     });
   }
 
   #start(): void {
-    const { step, progress } = this.#session;
-    if (!isPlayed(step)) return;
+    const { trialSeconds: seconds } = groupIn(this.#plan).task;
     this.#apply({ type: 'start' });
-    this.#trial = trialOf(this.#runner, { task: 'ball', seconds: step.seconds, key: `${progress.attempt}` });
+    this.#trial = trialOf(this.#runner, { task: 'ball', seconds, key: `${this.attempt}` });
   }
 
-  #apply(event: ProgressEvent): void {
+  #apply(event: Parameters<GroupSession['tell']>[0]): void {
     const refusal = this.#session.tell(event);
     if (refusal !== null) throw new Error(`${this.participant}: ${refusal}`);
   }
 }
 
-/** Three pages of one group in the room of their first ball match. `absence` is the rule of the plan. */
-export async function groupOfPages(plan: StudyPlan) {
-  const task = plan.tasks.find(({ id }) => id === 'ball');
-  if (!task) throw new Error('the plan has no ball game');
-  const { waitSeconds } = absenceRuleOf(task);
+/** Three pages of one group in the room of their first ball match. */
+export async function groupOfPages(plan: GroupPlan) {
+  const { task, members, waitSeconds } = groupIn(plan);
   const room = createTestRoom({
     ...{ assigned: true, pausable: true },
     ball: { everySeat: true, seconds: task.trialSeconds, waitSeconds },
   });
-  const { members = [] } = scheduleFor(plan, 'P01').groups.ball ?? {};
   const pages: GroupPage[] = members.map(
     (participant) => new GroupPage(plan, participant, room, () => pages.some(({ isOver }) => isOver)),
   );
@@ -201,7 +196,7 @@ export async function groupOfPages(plan: StudyPlan) {
     get wallSeconds(): number | null {
       return startedAt === null || endedAt === null ? null : endedAt - startedAt;
     },
-    get records(): readonly StudyRecord[] {
+    get records(): readonly GroupRecord[] {
       return pages.flatMap((page) => page.records);
     },
     get isOver(): boolean {

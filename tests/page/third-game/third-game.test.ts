@@ -73,7 +73,7 @@ test('the match is a trial of each of its players', async () => {
         open: async () => opened,
         leave: () => play.leave(),
       });
-      const room = { seat: async () => ({ room: 'here', token: '' }) };
+      const room = { seat: async () => ({ room: 'here', token: '' }), afterAbsence: 'repeat' as const };
       await runner.prepare({ participant: people[seat] as string, members: people, seconds: 20, ...room });
       return { runner, trial: trialOf(runner, { task: 'touch', seconds: 20, motion: false }) };
     }),

@@ -24,12 +24,12 @@ const same = (outcome: Partial<TrialOutcome>) => ({ [first]: outcome, [second]: 
 
 describe('the rules of trials in an export', () => {
   test('hold for a whole match with an absence on all three rows', () => {
-    const whole = { ended: 'time', seconds: 90.4, absences: [absence] } as const;
+    const whole: Partial<TrialOutcome> = { ended: 'time', seconds: 90.4, absences: [absence] };
     expect(trialProblems(recordsWith(same(whole)), plan)).toEqual([]);
   });
 
   test('name a trial that ended at its time long before it, and is counted', () => {
-    const part = { ended: 'time', seconds: 25 } as const;
+    const part: Partial<TrialOutcome> = { ended: 'time', seconds: 25 };
     expect(trialProblems(recordsWith({ [second]: part }), plan)).toEqual([
       `${second}, ball, block 1, run 1, trial 1: it ended at its time after 25.0 s of 90. An incomplete trial must not be counted.`,
     ]);

@@ -391,7 +391,7 @@ describe('the clock of a match', () => {
     expect(one.progress.waiting).toBeUndefined();
   });
 
-  test('of an unstarted trial is refused, and a trial that the group finished is left behind', () => {
+  test('does not run before its trial is started, which a finished group leaves behind', () => {
     const one = session(schedule);
     one.doUntil(({ id }) => id === 'ball/1/trial-1');
     expect(one.tell({ type: 'match-clock', runs: true, second: 0 })).not.toBeNull();

@@ -47,7 +47,8 @@ function participant(...events: readonly ProgressEvent[]) {
             setupProblems: [],
             withdrawalPage: 'https://lab.example.org/withdraw?study=paper',
           },
-          ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
+          ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null },
+          ...{ standing: false, awaited: null },
           ...situation,
         },
         // Nothing is pressed on these screens.
@@ -113,6 +114,14 @@ describe('a participant who plays', () => {
     });
     expect(one.screen({ playing: true, waitingFor: ['P02'] })?.text[0]).toContain('P02 is ready');
     expect(one.screen({ playing: true, standing: true })?.id).toBe('standing');
+    const awaited = { participants: ['P02'], secondsLeft: 34.2 };
+    expect(one.screen({ playing: true, standing: true, awaited })).toMatchObject({
+      text: [expect.stringContaining('waits for P02'), expect.stringContaining('given up')],
+      figure: '0:35',
+    });
+    const paused = one.screen({ playing: true, standing: true, awaited: { ...awaited, secondsLeft: null } });
+    expect(paused).toMatchObject({ text: [expect.stringContaining('waits for P02')], figure: null });
+    expect(one.screen({ awaited })?.text[0]).toContain('Your group is waiting for you');
   });
 });
 

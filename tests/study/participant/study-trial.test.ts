@@ -48,7 +48,8 @@ test('the outcome gives a round’s second 0 and every pause by the device’s c
 
 test('a round too long for the server keeps its first frames, and the outcome counts them', async () => {
   const game = new OneShotGame();
-  await game.prepare({ seat: () => Promise.reject(), participant: 'P01', members: [], seconds: 600 });
+  const place = { participant: 'P01', members: [], seconds: 600, afterAbsence: 'repeat' } as const;
+  await game.prepare({ ...place, seat: () => Promise.reject() });
   const trial = trialOf(game, { seconds: 600 });
   // A headset's numbers have single precision and are written in double.
   const a = Math.fround(-0.123_456_7);

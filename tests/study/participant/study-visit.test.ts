@@ -181,7 +181,7 @@ describe('a round', () => {
     ]);
   });
 
-  test('is announced as set aside after a void, on a sheet that takes no press at first', async () => {
+  test('is set aside by a void, on a sheet that takes no press at first', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheQuestions(server);
     expect(tab.display.shown).toBe('question-Q1');

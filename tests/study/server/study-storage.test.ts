@@ -179,7 +179,7 @@ describe.each(adapters)('a storage in $adapter', ({ open }) => {
       expect(await store.records.all('paper')).toHaveLength(completed('P02').length);
     });
 
-    test('of motion alone deletes the recordings, which no device adds to, and leaves the rest', async () => {
+    test('leaves all but the recordings where the code is for motion alone', async () => {
       const store = await withPaperStudy();
       const { withdrawalCode } = await store.places.claim('paper', 'P01', now);
       const records = completed('P01', { motion: true });

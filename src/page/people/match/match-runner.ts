@@ -38,8 +38,10 @@ class MatchTrial<Game extends HostedGame> {
   #paused = false;
   /** Members who are not ready. */
   #missing: readonly string[];
-  /** The newest absence that was passed on, or that belongs to an earlier match. */
-  #lastAbsence = 0;
+  /** The newest absence of an earlier match. */
+  #earlierAbsence = 0;
+  /** The newest absence that was passed on, or that ended before this trial was started. */
+  #lastAbsence: number;
   #welcomes: number;
   /** Second at which the room started the match that ran when this trial was started; null: none ran. */
   readonly #joinedLate: number | null;
@@ -61,6 +63,7 @@ class MatchTrial<Game extends HostedGame> {
   ) {
     this.#missing = place.members;
     this.#welcomes = room?.welcomeCount ?? 0;
+    this.#lastAbsence = room?.absences.findLast(({ seconds }) => seconds !== null)?.number ?? 0;
     this.#joinedLate = room?.match?.phase === 'running' ? task.figures(room.match).startedAt : null;
   }
 
@@ -79,18 +82,22 @@ class MatchTrial<Game extends HostedGame> {
     this.interrupted = (began && frame.epoch !== this.#epoch) || (connection === 'ended' && !(began && over));
     if (this.interrupted) return;
     if (began && (state.phase === 'ready' || this.task.figures(state).startedAt !== this.#startedAt)) {
-      this.#giveUp();
+      this.#giveUp(room);
       return;
     }
     this.#paused = frame.paused;
     if (this.#from === null) this.#begin(frame, room, getReady);
-    if (this.#from !== null) this.#follow(frame);
+    if (this.#from !== null) this.#follow(frame, room);
   }
 
   /** The room has given up the match, because a participant was away for too long. */
-  #giveUp(): void {
+  #giveUp(room: RoomView<Game>): void {
     if (this.place.afterAbsence === 'repeat') this.interrupted = true;
-    else this.end = { ...this.#newest, ...this.#late, ended: 'absence' };
+    else this.#end('absence', room);
+  }
+
+  #end(ended: TaskEnd['ended'], { absences }: RoomView<Game>): void {
+    this.end = { ...this.#newest, ...this.#late, ended, absences: this.#endedAfter(this.#earlierAbsence, absences) };
   }
 
   #begin({ state, me, players, time, epoch }: MatchFrame<Game>, room: RoomView<Game>, getReady: () => void): void {
@@ -100,7 +107,7 @@ class MatchTrial<Game extends HostedGame> {
       this.#startedAt = this.task.figures(state).startedAt ?? time;
       // However late this page draws its first frame of the match.
       this.#from = this.#joinedLate === this.#startedAt ? time : this.#startedAt;
-      this.#lastAbsence = room.absences.findLast(({ givenUp }) => givenUp)?.number ?? 0;
+      this.#earlierAbsence = room.absences.findLast(({ givenUp }) => givenUp)?.number ?? 0;
       this.#epoch = epoch;
     } else if (me !== null && !state.players[me]?.ready) {
       // The room may have forgotten: a server that was restarted, a seat that was only now given.
@@ -114,7 +121,7 @@ class MatchTrial<Game extends HostedGame> {
     return from > 0 ? { from } : {};
   }
 
-  #follow({ state, connection, me, events, time }: MatchFrame<Game>): void {
+  #follow({ state, connection, me, events, time }: MatchFrame<Game>, room: RoomView<Game>): void {
     const at = Math.max(0, time - (this.#from ?? time));
     this.#happened.push(...events.flatMap((event) => this.task.taskEvents(event, me, at)));
     const figures = this.task.figures(state);
@@ -125,7 +132,7 @@ class MatchTrial<Game extends HostedGame> {
     this.#newest = { seconds: Math.min(at, limit), score: figures.score, maximum: figures.of };
     // Without a connection this page does not know the score: it waits for the connection.
     if (!over && (at < limit || connection !== 'joined')) return;
-    this.end = { ...this.#newest, ...this.#late, ended: (over && figures.end) || 'time' };
+    this.#end((over && figures.end) || 'time', room);
   }
 
   take(): TaskEvent[] {
@@ -134,15 +141,19 @@ class MatchTrial<Game extends HostedGame> {
     return taken;
   }
 
-  /** Returns the absences of its match that ended since the last call. */
-  takeAbsences(absences: readonly SeenAbsence[]): TrialAbsence[] {
+  /** Returns the absences of its match that ended since the trial was started and since the last call. */
+  takeAbsences(absences: readonly SeenAbsence[]): readonly TrialAbsence[] {
     if (this.#from === null) return [];
+    const taken = this.#endedAfter(Math.max(this.#lastAbsence, this.#earlierAbsence), absences);
+    this.#lastAbsence = absences.findLast(({ seconds }) => seconds !== null)?.number ?? 0;
+    return taken;
+  }
+
+  #endedAfter(last: number, absences: readonly SeenAbsence[]): readonly TrialAbsence[] {
     return absences.flatMap(({ number, seats, at, seconds, givenUp }) => {
-      if (seconds === null || number <= this.#lastAbsence) return [];
-      this.#lastAbsence = number;
-      return [
-        { participants: membersOn(seats, this.place), time: Math.max(0, at - this.#startedAt), seconds, givenUp },
-      ];
+      if (seconds === null || number <= last) return [];
+      const participants = membersOn(seats, this.place);
+      return [{ participants, time: Math.max(0, at - this.#startedAt), seconds, givenUp }];
     });
   }
 

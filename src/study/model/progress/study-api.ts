@@ -24,7 +24,7 @@ export const commandSchema = v.variant('type', [
   }),
 ]);
 
-/** A command to a participant's page: of the experimenter, or of the server after the consent to motion was withdrawn. */
+/** A command to a participant's page: of the experimenter, or of the server, after a withdrawn consent to motion. */
 export type StudyCommand = v.InferOutput<typeof commandSchema> | { readonly type: 'withdraw-motion' };
 
 /** The largest recording that the server accepts [bytes]. */

@@ -1,6 +1,6 @@
 import { Button } from 'threepoint-ui/controls';
 import { studyLink } from '../../client/study-link';
-import { isPlayed, type Schedule, scheduleFor, trialOf } from '../../model/plan/schedule';
+import { type Schedule, scheduleFor, trialOf } from '../../model/plan/schedule';
 import { clockText } from '../../model/progress/progress';
 import type { ParticipantState } from '../../model/progress/study-api';
 import { type Column, numberColumn, textColumn } from '../table';
@@ -16,6 +16,7 @@ import {
   stop,
   voidBlock,
 } from './participant-actions';
+import { timeLeft } from './time-left';
 
 /** A page that was silent for longer than this counts as lost [s]. */
 const silentAfter = 12;
@@ -26,20 +27,8 @@ export const shownParticipants = (study: OpenStudy, age: number) =>
     const plan = planOf(study, state.version);
     const silence = state.session ? state.session.silence + age : 0;
     const schedule = scheduleFor(plan, state.participant);
-    return { state, plan, schedule, silence, remaining: remainingOf(study.states, schedule, state) };
+    return { state, plan, schedule, silence, remaining: timeLeft(study.states, schedule, state) };
   });
-
-/** Returns the time left of a step; for a match of a group, that of the page that reported last, for all the same. */
-function remainingOf(states: OpenStudy['states'], { groups, steps }: Schedule, { session }: ParticipantState) {
-  if (!session) return null;
-  const step = steps.find(({ id }) => id === session.step);
-  const members = (step && isPlayed(step) && groups[step.task]?.members) || [];
-  const playing = states.flatMap(({ participant, session: other }) =>
-    other?.running && other.step === session.step && members.includes(participant) ? [other] : [],
-  );
-  const newest = playing.toSorted((a, b) => a.silence - b.silence)[0];
-  return (session.running && newest ? newest : session).remainingSeconds;
-}
 
 type ShownParticipant = ReturnType<typeof shownParticipants>[number];
 

@@ -75,7 +75,6 @@ export class PlayedTrial {
   /** null: none are kept. */
   readonly #frames: TrackingFrame[] | null;
   readonly #seconds: TrialStopwatch;
-  readonly #absences: TrialAbsence[] = [];
   #begun = false;
   /** The second of the trial at which it ended; null: it goes on. */
   #endedAt: number | null = null;
@@ -118,9 +117,7 @@ export class PlayedTrial {
 
   /** Returns the absences of the group that ended since the last call. */
   takeAbsences(): readonly TrialAbsence[] {
-    const ended = this.#runner.takeAbsences?.() ?? [];
-    this.#absences.push(...ended);
-    return ended;
+    return this.#runner.takeAbsences?.() ?? [];
   }
 
   /** Whether the game was lost, so that the trial is void. */
@@ -198,15 +195,13 @@ export class PlayedTrial {
     this.#lastTime = time;
   }
 
-  #finish(end: TaskEnd): FinishedTrial {
-    this.takeAbsences();
+  #finish({ absences = [], ...end }: TaskEnd): FinishedTrial {
     this.abort();
     const recorded = this.#record();
     const motionFrames = recorded?.frames ?? 0;
-    const absences = this.#absences.slice(0, maxAbsences);
     const outcome = this.#log.finish({
       ...end,
-      ...(absences.length > 0 && { absences }),
+      ...(absences.length > 0 && { absences: absences.slice(0, maxAbsences) }),
       motionFrames,
       clock: this.#seconds.clock,
     });

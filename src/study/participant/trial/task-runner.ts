@@ -13,6 +13,8 @@ export interface TaskEnd {
   readonly maximum: number;
   /** The second of the match at which the trial began, if the match ran before; absent: with the match. */
   readonly from?: number;
+  /** The absences of the group in the whole match; absent: none. */
+  readonly absences?: readonly TrialAbsence[];
 }
 
 /** The absent participants while a match stands. */
@@ -57,7 +59,7 @@ export interface TaskRunner {
   readonly awaited?: Awaited | null;
   /** The second of the group's match, which is the same for all; null: it has not begun; absent: a game for one. */
   readonly second?: number | null;
-  /** Returns the absences that ended since the last call; absent: a game for one. */
+  /** Returns the absences that ended since the trial was started and since the last call; absent: a game for one. */
   takeAbsences?(): readonly TrialAbsence[];
   /** The end of the trial; null: there is no trial, or it goes on. */
   readonly end: TaskEnd | null;

@@ -461,6 +461,7 @@ describe('a third activity', () => {
       participant: 'P02',
       members: ['P02'],
       seconds: 9,
+      afterAbsence: 'repeat',
       seat: async () => ({ room: 'here', token: '' }),
     });
     expect(activities.current?.probe?.()).toEqual({ name: 'darts', seed: 5, participant: 'P02' });
