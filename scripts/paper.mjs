@@ -22,14 +22,19 @@ function options() {
   });
 }
 
-/** Measures the page's code path on people that its paper network was not trained on; resolves to an exit code. */
-async function measurePath(given, file) {
+/** Returns the people outside the lockbox that the page's paper network was not trained on, separated by commas. */
+async function newPeople(given) {
   const { code, output } = await runTraining('threepoint_training.report_people', passedOn(given, ['mocap']), {
     capture: true,
   });
   if (code !== 0) throw new SetupError(`paper: ${output.trim()}\n${usage}`);
   const people = JSON.parse(output).paper.join(',');
   if (people === '') throw new SetupError(`paper: ${given.mocap} has no one outside the lockbox.`);
+  return people;
+}
+
+/** Measures the page's code path on these people; resolves to an exit code. */
+async function measurePath(given, people, file) {
   const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
   try {
     const prepared = await prepareRecordings({ ...given, people }, recordings);
@@ -55,13 +60,14 @@ await main(async () => {
     training,
   );
   if (trained.code !== 0) return trained.code;
-  const model = createHash('sha256')
+  const people = await newPeople(given);
+  const hash = createHash('sha256')
     .update(readFileSync(join(models, 'paper.onnx')))
-    .update(given.mocap);
-  const path = join(stages, `path-${model.digest('hex').slice(0, 16)}.json`);
+    .update(given.mocap + people);
+  const path = join(stages, `path-${hash.digest('hex').slice(0, 16)}.json`);
   if (existsSync(path)) console.log('path: finished before');
   else {
-    const code = await measurePath(given, path);
+    const code = await measurePath(given, people, path);
     if (code !== 0) return code;
   }
   const page = [...passedOn(given, ['mocap', 'skeleton']), '--path', path];
