@@ -9,7 +9,7 @@ import {
 } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
 import { forward, rotate } from 'threepoint/math';
-import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
+import { type Avatar, createAvatarBetweenFrames, GazeTargets } from 'threepoint/three';
 import { pageFolder, ServerPresence } from 'threepoint-ui';
 import type { Activity, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
@@ -39,6 +39,7 @@ interface CheckWorldsOptions {
 interface ActivityWorld extends SurroundingsHost {
   readonly activity: OpenActivity;
   readonly surroundings: Surroundings | null;
+  readonly gazeTargets: GazeTargets;
 }
 
 /** Enters an activity as the page does, for a user who starts no round. */
@@ -47,6 +48,7 @@ async function openActivity(activity: Activity, options: CheckWorldsOptions): Pr
   const ignore = () => undefined;
   const host = {
     scene: new Scene(),
+    gazeTargets: new GazeTargets(),
     surroundings: null as Surroundings | null,
     setSurroundings(surroundings: Surroundings | null) {
       host.surroundings = surroundings;
@@ -75,11 +77,12 @@ async function openActivity(activity: Activity, options: CheckWorldsOptions): Pr
     avatar: { isBuiltIn: true, worn: defaultAvatar },
     fetchBuiltInAvatar: (name) => (name === defaultAvatar ? Promise.resolve(mannequin) : fetchBuiltInAvatar(name)),
     server: new ServerPresence(pageFolder(), ignore),
-    notices: { show: (_, text) => onProblem(text) },
+    notices: { show: (_, text) => onProblem(text), withdraw: ignore },
     study: { run: null },
     onCaption: ignore,
     onChange: ignore,
     layout: { seed: layoutSeed },
+    gazeTargets: host.gazeTargets,
     place: null,
     inputSource: 'headset',
     chooseInput: ignore,
@@ -144,10 +147,11 @@ export class CheckWorlds {
   update(time: number, frame: TrackingFrame): void {
     this.#studio.follow({ hips: frame.head.position });
     if (!this.#world) return;
-    const { activity } = this.#world;
+    const { activity, gazeTargets } = this.#world;
     activity.begin?.(time);
     activity.update(frame, nothingPressed);
     activity.show(time, frame);
+    gazeTargets.clear();
     this.#studio.setSurroundings(this.#world.surroundings);
   }
 

@@ -4,10 +4,14 @@ import { axisDomain } from '../../../src/study/pages/results/charts';
 
 const nameOf = () => 'Q1';
 const compared = (...values: readonly [readonly number[], readonly number[]]) =>
-  comparisonsOf([{ of: 'Q1', asked: null, unit: 'answer', values: { first: values[0], second: values[1] } }], () => ({
-    test: null,
-    ranks: null,
-  }));
+  comparisonsOf(
+    [{ of: 'Q1', asked: null, unit: 'answer', hypothesis: null, values: { first: values[0], second: values[1] } }],
+    () => ({
+      test: null,
+      ranks: null,
+      equivalence: null,
+    }),
+  );
 
 test('an axis has the ends of its scale while all intervals are within them', () => {
   const comparisons = compared([3, 3, 4], [3, 3, 3]);
