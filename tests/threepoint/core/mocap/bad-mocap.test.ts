@@ -46,7 +46,11 @@ describe('a damaged AMC is refused in a sentence that says where', () => {
 test('an AMC whose name tells no rate is read at 120 Hz, which is said', () => {
   const { files } = acclaim;
   const read = (name: string) => {
-    const renamed = { ...acclaim, motion: name, files: { [name]: files[acclaim.motion]!, [skeletonName]: files[skeletonName]! } };
+    const renamed = {
+      ...acclaim,
+      motion: name,
+      files: { [name]: files[acclaim.motion]!, [skeletonName]: files[skeletonName]! },
+    };
     return finishWork(prepareMocap(sourceOf(renamed)));
   };
   const [known, assumed] = [read('01_02.amc'), read('dance.amc')];
