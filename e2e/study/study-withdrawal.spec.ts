@@ -38,6 +38,16 @@ test('a participant withdraws alone by the code on the page beside it and keeps 
   const link = page.getByRole('link', { name: '/withdraw?study=leaving' });
   await page.goto((await link.getAttribute('href')) as string);
 
+  const motionOnly = page.getByRole('button', { name: 'Delete only my movements' });
+  await expect(motionOnly).toBeDisabled();
+  await page.getByLabel('Your withdrawal code').fill(code);
+  await motionOnly.click();
+  await expect(page.getByRole('region', { name: 'Receipt' })).toContainText('Your recorded movements are deleted');
+  await keepPicture(page, 'study-motion-withdrawn');
+  expect(await sessionsInBrowser(page)).toBe(1);
+  expect(await recordsOf(origin, 'leaving')).toHaveLength(1);
+  await page.reload();
+
   const go = page.getByRole('button', { name: 'Delete everything' });
   await page.getByLabel('Your withdrawal code').fill('AAAA-BBBB-CCCC-DDDD');
   await expect(go).toBeDisabled();
