@@ -19,21 +19,22 @@ export type MeasuredMethod = (typeof measuredMethods)[number];
 /** The methods that can be driven: also the paper's method as published, which no table of all methods has. */
 export type DrivenMethod = MeasuredMethod | 'paper-published';
 
-/**
- * What is drawn of one frame, floor frame [m]: every joint by name, what the network alone said, and the
- * processor's time for estimate and network [ms], which other programs do not change.
- */
+/** What is drawn of one frame, floor frame [m]: every joint by name, and what the network alone said. */
 export interface DrawnFrame {
-  readonly cpuMilliseconds: number;
   readonly joints: Readonly<Record<string, Vec3>>;
   readonly raw: JointPositions | null;
+}
+
+/** A frame with the processor's time for estimate and network [ms], which other programs do not change. */
+export interface TimedFrame extends DrawnFrame {
+  readonly cpuMilliseconds: number;
 }
 
 /**
  * One estimator behind the only calls that the evaluation makes of it: frames in order of time, and the page's reset.
  */
-export interface Driver {
-  draw(frame: TrackingFrame): Promise<DrawnFrame>;
+export interface Driver<Frame extends DrawnFrame = DrawnFrame> {
+  draw(frame: TrackingFrame): Promise<Frame>;
   reset(): void;
 }
 
@@ -46,7 +47,7 @@ export function createDriver(
   calibration: Calibration,
   regressor: PoseRegressor | null,
   frameByFrame = false,
-): Driver {
+): Driver<TimedFrame> {
   const published = name === 'paper-published';
   const options = published ? { paperOrientations: true } : { frameByFrame };
   const estimator =
@@ -80,9 +81,9 @@ export async function drive(
   calibration: Calibration,
   regressor: PoseRegressor | null,
   frames: readonly RecordedFrame[],
-): Promise<(MeasuredFrame & DrawnFrame)[]> {
+): Promise<(MeasuredFrame & TimedFrame)[]> {
   const driver = createDriver(name, calibration, regressor);
-  const result: (MeasuredFrame & DrawnFrame)[] = [];
+  const result: (MeasuredFrame & TimedFrame)[] = [];
   for (const { frame, truth } of frames) {
     const { leftHand, rightHand } = frame;
     const wrists = { left: leftHand?.position ?? null, right: rightHand?.position ?? null };
