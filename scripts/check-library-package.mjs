@@ -17,8 +17,8 @@ const largestBundles = [
   ['forwardKinematics', 'index.js', 2.2],
   ['parseRecording', 'index.js', 6.5],
   ['toXRBody', 'motion.js', 27],
-  ['BodyTracker', 'three.js', 93],
-  ['loadAvatar', 'three.js', 138],
+  ['BodyTracker', 'three.js', 94],
+  ['loadAvatar', 'three.js', 141],
   ['pinning', 'trackers.js', 18.5],
 ];
 

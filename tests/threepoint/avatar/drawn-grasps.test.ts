@@ -95,7 +95,7 @@ function nearest(skin: DrawnSkin, bones: readonly string[], distance: (at: Vec3)
 }
 
 /** Flesh gives way by so much where it is pressed [mm]. */
-const flesh = 6;
+const flesh = 6.5;
 
 describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (body) => {
   const avatar = await builtInBody(body);
