@@ -188,7 +188,7 @@ test('a large file says how far it is, and given up half-way it leaves nothing b
   await choose(page, filesOf(acclaim!));
   const heading = card(page).getByRole('heading', { name: '11_07' });
   await expect(heading).toBeVisible();
-  const before = { workers: page.workers().length, recorder: (await probe(page)).recorder };
+  const before = { workers: page.workers().length, ...(await probe(page)) };
   expect(before.recorder.mode).toBe('replaying');
 
   await choose(page, path);
@@ -199,6 +199,6 @@ test('a large file says how far it is, and given up half-way it leaves nothing b
   await expect.poll(() => page.workers().length).toBe(before.workers);
   await expect(heading).toBeVisible();
   const { recorder, notices } = await probe(page);
-  expect([recorder.mode, recorder.frames, notices]).toEqual(['replaying', before.recorder.frames, []]);
+  expect([recorder.mode, recorder.frames, notices]).toEqual(['replaying', before.recorder.frames, before.notices]);
   rmSync(path);
 });
