@@ -166,17 +166,17 @@ export type DisconnectReason = (typeof disconnectReasons)[number];
 
 /** A time for which the clock of a match stood because players were away; times of the room [s]. */
 const absence = v.strictObject({
-  /** Counted from 1 over all matches of the room. */
+  // Counted from 1 over all matches of the room.
   number: integerWithin(1, 1e6),
   seats: v.pipe(v.array(seat), v.maxLength(maxSeats)),
-  /** The second of the match at which its clock was stopped. */
+  // The second of the match at which its clock was stopped.
   at: seconds,
   since: seconds,
-  /** When the match is given up; null: not while a player requests a pause. */
+  // When the match is given up; null: not while a player requests a pause.
   until: v.nullable(seconds),
-  /** For how long the match waited [s]; null: it still waits. */
+  // For how long the match waited [s]; null: it still waits.
   seconds: v.nullable(seconds),
-  /** Whether the match was given up, and replaced by another one at its start. */
+  // Whether the match was given up, and replaced by another one at its start.
   givenUp: v.boolean(),
 });
 export type Absence = v.InferOutput<typeof absence>;
