@@ -6,11 +6,7 @@ import { measureResponse, measureTremble } from '../../bench/evaluate/response';
 
 /** A body whose one joint is the right hand, as a filter lets it be drawn. */
 const drawing = (filter: (hand: Vec3, frame: TrackingFrame) => Vec3): Driver => ({
-  draw: async (frame) => ({
-    joints: { hand: filter(frame.rightHand!.position, frame) },
-    raw: null,
-    cpuMilliseconds: 0,
-  }),
+  draw: async (frame) => ({ joints: { hand: filter(frame.rightHand!.position, frame) }, raw: null }),
   reset: () => undefined,
 });
 

@@ -1,17 +1,17 @@
 import type { SceneParts } from './fbx/glb-of-scene';
 import { isFbx } from './fbx/is-fbx';
+import { readGlbChunks } from './glb-chunks';
 
 /** The largest file that is converted [MB]. */
 const maxMegabytes = 60;
 
 /** Returns whether a file is glTF as text, or a GLB file whose description has addresses, which may be data URLs. */
 function hasAddresses(file: Uint8Array): boolean {
-  if (new TextDecoder().decode(file.subarray(0, 4)) !== 'glTF') return /^[\ufeff\s]*\{/.test(start(file, 100));
-  const length = file.length < 20 ? 0 : new DataView(file.buffer, file.byteOffset).getUint32(12, true);
-  return start(file, 20 + length).includes('"uri"');
+  const chunks = readGlbChunks(file);
+  return chunks
+    ? chunks.json.includes('"uri"')
+    : /^[\ufeff\s]*\{/.test(new TextDecoder().decode(file.subarray(0, 100)));
 }
-
-const start = (file: Uint8Array, length: number): string => new TextDecoder().decode(file.subarray(0, length));
 
 /**
  * Returns a file as GLB that holds everything itself: FBX converted, data URLs embedded, any other as it is. Rejects
