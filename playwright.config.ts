@@ -24,6 +24,8 @@ export default defineConfig({
   // The second report is for scripts/test.mjs, which counts tests.
   reporter: [['list'], ['junit', { outputFile: 'artifacts/test-reports/e2e.xml', includeRetries: true }]],
   use: {
+    // A name that no longer exists fails its step, with the step's line, rather than the whole test's time.
+    actionTimeout: 60_000,
     // What a page asks for is what a test sees; e2e/page/offline.spec.ts alone lets one be kept.
     serviceWorkers: 'block',
     viewport: { width: 960, height: 600 },
