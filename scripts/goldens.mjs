@@ -1,5 +1,5 @@
-// npm run tool -- goldens --mocap DIR [--write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]: compares
-// the estimates of recorded motion with tests/golden/estimates.json; --write replaces that file.
+// npm run tool -- goldens: compares the estimates of recorded motion with tests/golden/estimates.json; --write replaces
+// that file.
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,14 +9,12 @@ import { prepareRecordings } from './python-environment.mjs';
 import { main, root, runProgram, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run tool -- goldens --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
+  'npm run tool -- goldens --mocap DIR [--write] [--quick]\n' +
   'DIR holds the recordings that the goldens were frozen with; docs/accuracy.md says the rest.';
 
 function options() {
-  const known = { texts: ['only'], paths: ['mocap', 'frames', 'models'], flags: ['compare', 'write', 'quick', 'all'] };
-  return readOptions('goldens', usage, known, ({ mocap, write, compare }) => {
+  return readOptions('goldens', usage, { paths: ['mocap'], flags: ['write', 'quick'] }, ({ mocap }) => {
     if (!mocap) throw new Error('--mocap is needed');
-    if (write && compare) throw new Error('either --compare or --write');
   });
 }
 
@@ -58,9 +56,7 @@ await main(async () => {
   const recordings = join(root, '.cache/goldens', `recordings-${recordingsKey(mocap)}`);
   const code = await prepareOnce(mocap, recordings);
   if (code !== 0) return code;
-  const [models, frames, golden] = ['public/models', '.cache/goldens/frames', 'tests/golden/estimates.json'].map(
-    (path) => join(root, path),
-  );
-  const request = JSON.stringify({ models, frames, ...given, golden, recordings });
+  const [models, golden] = ['public/models', 'tests/golden/estimates.json'].map((path) => join(root, path));
+  const request = JSON.stringify({ ...given, models, golden, recordings });
   return runProgram('bench/evaluate/golden/goldens.ts', [request]);
 });
