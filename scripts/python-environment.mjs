@@ -1,5 +1,6 @@
 import { createHash } from 'node:crypto';
-import { existsSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { passedOn } from './command-line.mjs';
 import { installWithApt, root, run, runQuietly, SetupError } from './run-command.mjs';
@@ -113,4 +114,17 @@ export async function runTraining(module, args, { extras = [], ...options } = {}
 export async function prepareRecordings(given, out, options) {
   const args = passedOn({ ...given, out }, ['people', 'mocap', 'skeleton', 'out']);
   return (await runTraining('threepoint_training.recordings', args, options)).code;
+}
+
+/**
+ * Prepares motion capture in a temporary folder, which `work` reads and may write into; it is deleted, because it holds
+ * motion data. `work` returns an exit code. Resolves to it, or to that of a preparation which failed.
+ */
+export async function withRecordings(given, work, options) {
+  const folder = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
+  try {
+    return (await prepareRecordings(given, folder, options)) || (await work(folder));
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
 }
