@@ -1,8 +1,7 @@
-// npm run tool -- report --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the
-// shipping code path with the cross-validation networks of npm run tool -- train, each on people it was not trained on,
-// and renews the tables and figures of docs/accuracy.md. npm run tool -- report --redraw: renews them from the last
-// measurement. npm run tool -- report --legs --mocap DIR: renews the table of legs alone, with the page's network for
-// the body and the cross-validation networks of npm run tool -- train:gait.
+// npm run tool -- report: measures the shipping code path with the cross-validation networks of npm run tool -- train,
+// each on people it was not trained on, and renews the tables and figures of docs/accuracy.md; --redraw renews them from
+// the last measurement. --legs renews the table of legs alone, with the page's network for the body and the
+// cross-validation networks of npm run tool -- train:gait.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';

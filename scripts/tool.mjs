@@ -55,6 +55,14 @@ const programs = {
     },
     argumentsOf: ({ rest: [file], ...given }) => [JSON.stringify({ ...given, file })],
   },
+  /** Runs the tests that report figures of docs/reliability.json, and writes docs/reliability.md. */
+  reliability: {
+    program: 'scripts/reliability/main.ts',
+    usage:
+      'npm run tool -- reliability [--unit | --long | --redraw]\n' +
+      '--unit: without a browser. --long: also twenty minutes of play. --redraw: writes the page from the last figures.',
+    options: { flags: ['unit', 'long', 'redraw'] },
+  },
   /** Prints the errors of a plan, or its duration and what its participants see. */
   'study:check': {
     program: 'src/study/cli/check/main.ts',
@@ -106,7 +114,7 @@ const programs = {
 
 /** The tools that are scripts of their own. */
 export const scriptTools = [
-  ...['train', 'train:gait', 'evaluate', 'report', 'paper', 'goldens', 'renew', 'reliability'],
+  ...['train', 'train:gait', 'evaluate', 'report', 'paper', 'goldens', 'renew'],
   ...['pictures', 'bench', 'avatars:fetch', 'avatars:try'],
 ];
 
