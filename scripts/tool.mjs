@@ -23,8 +23,8 @@ const programs = {
   /** Measures how many clients a relay process carries, next to a plain socket.io relay. */
   'bench:relay': {
     program: 'bench/relay/main.ts',
-    usage: 'npm run tool -- bench:relay [--json FILE] [--quick] [--rooms N] [--hz N] [--seconds N] [--count N]',
-    options: { texts: ['rooms', 'hz', 'seconds', 'count'], paths: ['json'], flags: ['quick'] },
+    usage: 'npm run tool -- bench:relay [--json FILE] [--quick] [--rooms N,N] [--hz N,N] [--seconds N]',
+    options: { texts: ['rooms', 'hz', 'seconds'], paths: ['json'], flags: ['quick'] },
   },
   /** Measures concurrent participants of a study on one server. --flush-ms delays each flush of the disk, by strace. */
   'bench:study': {
