@@ -14,10 +14,8 @@ export interface LossErrors {
 /** How far a shown joint moves in one frame. */
 export interface LongestStep {
   readonly stepCm: number;
-  readonly joint: string;
   /** The largest part of a step that the same joint does not make in the same frame with the hand seen. */
   readonly excessCm: number;
-  readonly excessJoint: string;
   /** Losses with an excess over 5 cm. */
   readonly over5Cm: number;
 }
@@ -36,7 +34,7 @@ export interface LossReport {
 const noSums = () => ({ all: 0, allSeen: 0, joints: 0, elbow: 0, elbowSeen: 0, elbows: 0 });
 type Sums = ReturnType<typeof noSums>;
 
-const noSteps = () => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
+const noSteps = () => ({ step: 0, excess: 0, over: 0 });
 type StepTally = ReturnType<typeof noSteps>;
 
 /** What losses of one kind did; add clip by clip, then report. */
@@ -102,12 +100,11 @@ function addSteps(tally: StepTally, { lossy, seen }: Estimated, from: number, to
   for (let row = Math.max(1, from); row < to; row++) {
     for (const joint of Object.keys(lossy[row]?.joints ?? {})) {
       const moved = step(lossy, row, joint);
-      const excess = moved - step(seen, row, joint);
-      worst = Math.max(worst, excess);
-      if (moved > tally.step) Object.assign(tally, { step: moved, joint });
-      if (excess > tally.excess) Object.assign(tally, { excess, excessJoint: joint });
+      tally.step = Math.max(tally.step, moved);
+      worst = Math.max(worst, moved - step(seen, row, joint));
     }
   }
+  tally.excess = Math.max(tally.excess, worst);
   if (worst > 5) tally.over += 1;
 }
 
@@ -117,11 +114,9 @@ const lossErrors = ({ all, allSeen, joints, elbow, elbowSeen, elbows }: Sums): L
   elbowCm: rounded(elbow / elbows, 3),
   elbowSeenCm: rounded(elbowSeen / elbows, 3),
 });
-const longestStep = ({ step, joint, excess, excessJoint, over }: StepTally): LongestStep => ({
+const longestStep = ({ step, excess, over }: StepTally): LongestStep => ({
   stepCm: rounded(step, 2),
-  joint,
   excessCm: rounded(excess, 2),
-  excessJoint,
   over5Cm: over,
 });
 
