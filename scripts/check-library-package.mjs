@@ -102,12 +102,14 @@ function missingFields(folder) {
 async function wronglyResolved() {
   const faults = [];
   for (const folder of folders) {
-    const checks = [
-      ['publint', folder, '--strict'],
-      ['attw', '--pack', folder, '--profile', 'esm-only', '--quiet'],
-    ];
-    for (const check of checks)
-      if ((await run('npx', check)).code !== 0) faults.push(`${check[0]} has faults in ${relative(root, folder)}`);
+    // Without npx, which takes half a second to find each.
+    const checks = {
+      publint: ['node_modules/publint/src/cli.js', folder, '--strict'],
+      attw: ['node_modules/@arethetypeswrong/cli/dist/index.js', '--pack', folder, '--profile', 'esm-only', '--quiet'],
+    };
+    for (const [name, check] of Object.entries(checks))
+      if ((await run(process.execPath, check)).code !== 0)
+        faults.push(`${name} has faults in ${relative(root, folder)}`);
   }
   return faults;
 }
