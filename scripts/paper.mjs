@@ -6,7 +6,7 @@ import { existsSync, mkdirSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { runTraining, withRecordings } from './python-environment.mjs';
+import { reportPeople, runTraining, withRecordings } from './python-environment.mjs';
 import { main, root, runProgram, SetupError } from './run-command.mjs';
 
 const usage =
@@ -22,14 +22,10 @@ function options() {
 }
 
 /** Returns the people outside the lockbox that the page's paper network was not trained on, separated by commas. */
-async function newPeople(given) {
-  const { code, output } = await runTraining('threepoint_training.report_people', passedOn(given, ['mocap']), {
-    capture: true,
-  });
-  if (code !== 0) throw new SetupError(`paper: ${output.trim()}\n${usage}`);
-  const people = JSON.parse(output).paper.join(',');
-  if (people === '') throw new SetupError(`paper: ${given.mocap} has no one outside the lockbox.`);
-  return people;
+async function newPeople({ mocap }) {
+  const { paper } = await reportPeople(mocap);
+  if (paper.length === 0) throw new SetupError(`paper: ${mocap} has no one outside the lockbox.`);
+  return paper.join(',');
 }
 
 /** Measures the page's code path on these people; resolves to an exit code. */

@@ -3,7 +3,7 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, w
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { passedOn } from './command-line.mjs';
-import { installWithApt, root, run, runQuietly, SetupError } from './run-command.mjs';
+import { installWithApt, outputOf, root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const projectFile = join(root, 'training/pyproject.toml');
 /** The installer of the packages in pyproject.toml; nothing else needs it. */
@@ -45,8 +45,8 @@ project = tomllib.load(open(sys.argv[1], 'rb'))['project']
 optional = project.get('optional-dependencies', {})
 for requirement in project.get('dependencies', []) + [r for extra in sys.argv[2:] for r in optional[extra]]:
     print(requirement)`;
-  const { code, output } = await runQuietly(python, ['-c', script, projectFile, ...extras]);
-  if (code !== 0) throw new SetupError(`training/pyproject.toml could not be read:\n${output.trim()}`);
+  const read = ['-c', script, projectFile, ...extras];
+  const output = await outputOf(python, read, 'training/pyproject.toml could not be read');
   return output.trim().split(/\r?\n/).filter(Boolean);
 }
 
@@ -105,6 +105,17 @@ export async function runTraining(module, args, { extras = [], ...options } = {}
   const python = await pythonEnvironment({ extras });
   const env = { PYTHONPATH: join(root, 'training'), PYTHONUNBUFFERED: '1' };
   return run(python, ['-m', module, ...args], { env, ...options });
+}
+
+/**
+ * Returns the people of a folder of motion capture whom the report measures: those of its tables, those whom the page's
+ * paper network was not trained on, and those of another laboratory.
+ */
+export async function reportPeople(mocap) {
+  const list = ['--mocap', mocap];
+  const { code, output } = await runTraining('threepoint_training.report_people', list, { capture: true });
+  if (code !== 0) throw new SetupError(output.trim());
+  return JSON.parse(output);
 }
 
 /**

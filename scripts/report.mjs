@@ -5,7 +5,7 @@
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';
-import { runTraining } from './python-environment.mjs';
+import { reportPeople, runTraining } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
@@ -60,17 +60,9 @@ const laboratories = Object.fromEntries(
   ]),
 );
 
-/** Returns the people of the tables and of another laboratory; Python maps files to people. */
-async function peopleIn(mocap) {
-  const list = ['--mocap', mocap];
-  const { code, output } = await runTraining('threepoint_training.report_people', list, { capture: true });
-  if (code !== 0) throw new SetupError(`report: ${output.trim()}\n${usage}`);
-  return JSON.parse(output);
-}
-
 /** Measures the data of all tables and figures except those of legs; resolves to an exit code. */
 async function measure(given, models, { evaluation, figures }) {
-  const there = await peopleIn(given.mocap);
+  const there = await reportPeople(given.mocap);
   mkdirSync(measured, { recursive: true });
   // Earlier results are deleted, because they may be from other networks or people.
   for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });
