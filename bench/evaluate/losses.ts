@@ -1,7 +1,7 @@
 import { estimatedJoints } from 'threepoint/core';
 import { distance } from 'threepoint/math';
 import { aftermathSeconds, type Loss } from './disturbances';
-import { type MeasuredFrame, rounded } from './measures';
+import { jointOf, type MeasuredFrame, rounded } from './measures';
 
 /** Errors [cm] in some frames, with the hand lost and, in the same frames, seen. */
 export interface LossErrors {
@@ -70,7 +70,7 @@ export function addLosses(tally: LossTally, estimated: Estimated, losses: readon
 function addErrors(sums: Sums, { lossy, seen }: Estimated, side: Loss['side'], from: number, to: number): void {
   for (let row = from; row < Math.min(to, lossy.length); row++) {
     for (const joint of estimatedJoints) {
-      const [a, b] = [errorOf(lossy[row], joint), errorOf(seen[row], joint)];
+      const [a, b] = [errorOf(lossy[row]!, joint), errorOf(seen[row]!, joint)];
       sums.all += a;
       sums.allSeen += b;
       sums.joints += 1;
@@ -83,22 +83,16 @@ function addErrors(sums: Sums, { lossy, seen }: Estimated, side: Loss['side'], f
   }
 }
 
-function errorOf(frame: MeasuredFrame | undefined, joint: (typeof estimatedJoints)[number]): number {
-  const estimated = frame?.joints[joint];
-  if (!frame || !estimated) throw new Error(`the estimator gave no ${joint}`);
-  return distance(estimated, frame.truth[joint]) * 100;
-}
+const errorOf = ({ joints, truth }: MeasuredFrame, joint: (typeof estimatedJoints)[number]): number =>
+  distance(jointOf(joints, joint), truth[joint]) * 100;
 
 /** Steps into the frames [from, to), in centimetres per 1/60 s at any rate. */
 function addSteps(tally: StepTally, { lossy, seen }: Estimated, from: number, to: number, rateHz: number): void {
-  const step = (frames: readonly MeasuredFrame[], row: number, joint: string): number => {
-    const [before, now] = [frames[row - 1]?.joints[joint], frames[row]?.joints[joint]];
-    if (!before || !now) throw new Error(`the estimator gave no ${joint}`);
-    return (distance(before, now) * 100 * rateHz) / 60;
-  };
+  const step = (frames: readonly MeasuredFrame[], row: number, joint: string): number =>
+    (distance(jointOf(frames[row - 1]!.joints, joint), jointOf(frames[row]!.joints, joint)) * 100 * rateHz) / 60;
   let worst = 0;
   for (let row = Math.max(1, from); row < to; row++) {
-    for (const joint of Object.keys(lossy[row]?.joints ?? {})) {
+    for (const joint of Object.keys(lossy[row]!.joints)) {
       const moved = step(lossy, row, joint);
       tally.step = Math.max(tally.step, moved);
       worst = Math.max(worst, moved - step(seen, row, joint));
