@@ -2,8 +2,8 @@ import type { Browser, CDPSession } from '@playwright/test';
 import { outcomeOf, withPage } from './bench-page';
 
 /**
- * What is measured. An estimator: one estimate of one body, nothing else. ball8: a court with seven others whose packets
- * come 30 times a second: received, decoded, played back, bent, drawn.
+ * What is measured. An estimator: one estimate of one body, nothing else. ball8: a court with seven others whose
+ * packets come 30 times a second: received, decoded, played back, bent, drawn.
  */
 export const allocationScenes = ['ik', 'paper', 'learned', 'ball8'] as const;
 export type AllocationScene = (typeof allocationScenes)[number];

@@ -1,4 +1,5 @@
-// npm run tool -- bench:study: remote participants of one study at once on one server process, each as the page behaves.
+// npm run tool -- bench:study: remote participants of one study at once on one server process, each as the page
+// behaves.
 
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

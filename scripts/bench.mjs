@@ -1,7 +1,7 @@
 // npm run tool -- bench: measures the page in headless Chromium, part by part. Without names it measures every part,
-// which takes half an hour on two cores without a GPU; "frames --rounds 3" takes minutes. "counts" counts what each world
-// draws, and fails where a budget is exceeded. --device uses WebGPU on the machine's GPU instead of in software. Each
-// part is written to FILE when it ends; ratios of frames have 95 % confidence intervals.
+// which takes half an hour on two cores without a GPU; "frames --rounds 3" takes minutes. "counts" counts what each
+// world draws, and fails where a budget is exceeded. --device uses WebGPU on the machine's GPU instead of in software.
+// Each part is written to FILE when it ends; ratios of frames have 95 % confidence intervals.
 import { buildWhenStale } from './build.mjs';
 import { ensureChromium } from './chromium.mjs';
 import { readOptions } from './command-line.mjs';

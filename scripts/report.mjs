@@ -1,6 +1,6 @@
 // npm run tool -- report: measures the shipping code path with the cross-validation networks of npm run tool -- train,
-// each on people it was not trained on, and renews the tables and figures of docs/accuracy.md; --redraw renews them from
-// the last measurement. --legs renews the table of legs alone, with the page's network for the body and the
+// each on people it was not trained on, and renews the tables and figures of docs/accuracy.md; --redraw renews them
+// from the last measurement. --legs renews the table of legs alone, with the page's network for the body and the
 // cross-validation networks of npm run tool -- train:gait.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';

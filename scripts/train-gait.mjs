@@ -1,6 +1,6 @@
-// npm run tool -- train:gait: trains the network that predicts footsteps. Python prepares the motion, the page's own code
-// computes the inputs, Python trains. It trains without each of four groups of people (.cache/gait, for npm run tool --
-// report --legs), then on all people (src/threepoint/core/estimation/gait/gait-network.json).
+// npm run tool -- train:gait: trains the network that predicts footsteps. Python prepares the motion, the page's own
+// code computes the inputs, Python trains. It trains without each of four groups of people (.cache/gait, for npm run
+// tool -- report --legs), then on all people (src/threepoint/core/estimation/gait/gait-network.json).
 import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';

@@ -1,5 +1,5 @@
-// npm run tool -- bench:relay: how many clients one relay process carries, beside a plain socket.io relay under the same
-// load.
+// npm run tool -- bench:relay: how many clients one relay process carries, beside a plain socket.io relay under the
+// same load.
 import { writeFileSync } from 'node:fs';
 import { availableParallelism, cpus } from 'node:os';
 import { monitorEventLoopDelay } from 'node:perf_hooks';

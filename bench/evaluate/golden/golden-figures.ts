@@ -37,7 +37,7 @@ export interface DrivenPiece {
   readonly recordedHz: number;
   readonly staged: Staged;
   readonly driven: readonly MeasuredFrame[];
-  /** The same frames with nothing done to them, where hands were lost. */
+  /** Undisturbed frames of the piece, where hands were lost. */
   readonly seen: readonly MeasuredFrame[] | null;
 }
 
