@@ -2,11 +2,8 @@ import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
 import { isNightly } from './tests/nightly.ts';
 import { thirdGame } from './tests/page/third-game/added-lines.ts';
 
-/**
- * Tests in processes of their own: pages with dynamic imports, because a file may end while an import is pending, which
- * would fail the next file; and a count of allocations, because compiled code depends on what ran before.
- */
-const apart = ['tests/page/shell/**/*.test.ts', 'tests/ui/vr-touch.test.ts'];
+/** Tests that count allocations have a process of their own, because compiled code depends on what ran before. */
+const apart = ['tests/page/shell/panels/headset-controls.test.ts', 'tests/ui/vr-touch.test.ts'];
 
 /** Tests with a third game in the registries. */
 const withThirdGame = ['page/third-game/*', 'server/third-game', 'study/third-game'].map(

@@ -2,31 +2,24 @@ import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from '@playwright/test';
 import { servePage } from '../tests/server/served-page';
 
+const folder = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+
 /** Folders of built pages: the real one, and the bench's own. */
-export const builtPages = { real: builtIn('dist'), bench: builtIn('.cache/bench') } as const;
+export const builtPages = { real: folder('../dist'), bench: folder('../.cache/bench') } as const;
 
-/** Folder of a build, as an absolute path. */
-export function builtIn(folder: string): string {
-  return fileURLToPath(new URL(`../${folder}`, import.meta.url));
-}
-
-/** Serves a folder of built pages while it is measured; clocks are fine where it is `isolated`. */
-export async function withServed<T>(
-  folder: string,
-  measure: (address: string, port: number) => Promise<T>,
-  isolated = folder === builtPages.bench,
-): Promise<T> {
+/** Serves a folder of built pages while it is measured; clocks are fine on the bench's own. */
+export async function withServed<T>(folder: string, measure: (address: string) => Promise<T>): Promise<T> {
   const server = await servePage(folder, {
     before(_, response) {
       // Without isolation performance.now() moves in steps of 0.1 ms.
-      if (isolated) {
+      if (folder === builtPages.bench) {
         response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
         response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
       }
     },
   });
   try {
-    return await measure(`http://localhost:${server.port}`, server.port);
+    return await measure(`http://localhost:${server.port}`);
   } finally {
     await server.close();
   }

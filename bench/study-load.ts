@@ -1,5 +1,5 @@
-// npm run tool -- bench:study [--participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one
-// study at once on one server process, each as the page behaves.
+// npm run tool -- bench:study: remote participants of one study at once on one server process, each as the page
+// behaves.
 
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -161,7 +161,7 @@ await server.kill();
 deleteImage();
 rmSync(directory, { recursive: true, force: true });
 
-const rows = [...times].map(([kind, ms]) => ({
+const requests = [...times].map(([kind, ms]) => ({
   kind,
   requests: ms.length,
   p50Ms: Math.round(10 * quantile(ms, 0.5)) / 10,
@@ -177,15 +177,10 @@ const figures = {
   acknowledged,
   stored: stored.records.length,
   refused: refused.length,
-  rows,
+  sentAgain,
 };
-console.log(
-  `${count} participants at once for ${Math.round(took)} s: ${acknowledged} records acknowledged, ${figures.stored} stored, ${refused.length} requests refused, ${sentAgain} sent again.`,
-);
-console.log(
-  `The server took ${(100 * figures.cpuShare).toFixed(0)} % of a core and ${figures.rssMegabytes.toFixed(0)} MB (${(before.rssBytes / 2 ** 20).toFixed(0)} MB before).`,
-);
-console.table(rows);
+console.table([figures]);
+console.table(requests);
 for (const one of refused.slice(0, 5)) console.log(one);
-if (options.json) writeFileSync(options.json, `${JSON.stringify(figures, null, 2)}\n`);
+if (options.json) writeFileSync(options.json, `${JSON.stringify({ ...figures, requests }, null, 2)}\n`);
 process.exitCode = acknowledged === figures.stored && refused.length === 0 ? 0 : 1;

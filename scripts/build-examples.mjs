@@ -5,17 +5,11 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { buildPackagesWhenStale, packages } from './build-packages.mjs';
-import { mainOf, root, runQuietly, SetupError } from './run-command.mjs';
+import { mainOf, outputOf, root } from './run-command.mjs';
 
-async function done(command, args, cwd) {
-  // Playwright sets NODE_ENV to "test", with which Next cannot build.
-  const result = await runQuietly(command, args, { cwd, env: { NODE_ENV: undefined } });
-  if (result?.code !== 0) {
-    throw new SetupError(
-      `${command} ${args.join(' ')} failed in ${cwd}:\n${result?.output.trim() ?? 'it is not there'}`,
-    );
-  }
-}
+// Playwright sets NODE_ENV to "test", with which Next cannot build.
+const npm = (args, cwd) =>
+  outputOf('npm', args, `npm ${args.join(' ')} failed in ${cwd}`, { cwd, env: { NODE_ENV: undefined } });
 
 const quiet = ['--no-audit', '--no-fund', '--no-update-notifier', '--ignore-scripts', '--prefer-offline'];
 
@@ -42,7 +36,7 @@ export async function pack(names = Object.keys(packages)) {
   await buildPackagesWhenStale(names);
   for (const name of names) {
     mkdirSync(join(folder, name));
-    await done('npm', ['pack', join(root, packages[name].folder), '--pack-destination', join(folder, name)], folder);
+    await npm(['pack', join(root, packages[name].folder), '--pack-destination', join(folder, name)], folder);
   }
   return folder;
 }
@@ -60,13 +54,13 @@ export async function buildExample(name, folder) {
     manifest.dependencies[packed] = `file:../${packed}/${tarball}`;
   }
   writeFileSync(join(own, 'package.json'), JSON.stringify(manifest));
-  await done('npm', ['install', ...quiet], own);
+  await npm(['install', ...quiet], own);
   for (const [script, command] of Object.entries(manifest.scripts ?? {}).filter(([script]) =>
     script.startsWith('build'),
   )) {
     // The page runs from any folder.
     const options = command === 'vite build' ? ['--', '--base', './', '--logLevel', 'error'] : [];
-    await done('npm', ['run', script, ...options], own);
+    await npm(['run', script, ...options], own);
   }
   return own;
 }

@@ -1,13 +1,11 @@
 // Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the
-// models for the runtime with their model card, the mannequin, and the sources that editors open. Prints the size of
-// each entry and fails if a document states another size. `npm pack ./dist-library` makes the tarball.
+// models for the runtime with their model card, the mannequin, and the sources that editors open. `npm pack
+// ./dist-library` makes the tarball.
 import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, posix, relative } from 'node:path';
-import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
-import { staleSizes } from './library-sizes.mjs';
 import { packageCollector, writeLicences } from './licences.mjs';
-import { mainOf, root, run, SetupError } from './run-command.mjs';
+import { root, run, SetupError } from './run-command.mjs';
 import { buildPackage } from './source-hash.mjs';
 
 const out = join(root, 'dist-library');
@@ -22,7 +20,9 @@ export const entriesOf = (folder, { exports, publishConfig }) =>
     ),
   );
 const entries = entriesOf('src/threepoint', own);
-const external = (id) => Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
+/** Whether a module is of a peer, which no bundle contains. */
+export const external = (id) =>
+  Object.keys(own.peerDependencies).some((name) => id === name || id.startsWith(`${name}/`));
 
 /** Files of the package other than code: path in the package to path in the repository. */
 const copied = {
@@ -69,7 +69,7 @@ const workersAsText = {
 
 /** Returns the code of a worker as one module without imports, which a worker without an address cannot resolve. */
 async function workerCode(module) {
-  const build = await bundle({ worker: module }, [], []);
+  const build = await bundle({ worker: module }, []);
   const { output } = await build.generate({ format: 'esm', minify: true, codeSplitting: false });
   await build.close();
   if (output.length !== 1) throw new SetupError(`The worker ${module} is ${output.length} files; it must be one.`);
@@ -91,7 +91,7 @@ const alias = Object.fromEntries(
 );
 
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
-async function bundle(input, plugins = [], outside = external) {
+async function bundle(input, outside = external) {
   return rolldown({
     input,
     cwd: root,
@@ -99,7 +99,7 @@ async function bundle(input, plugins = [], outside = external) {
     external: outside,
     resolve: { alias },
     moduleTypes: { '.bin': 'binary', '.vrm': 'binary' },
-    plugins: [workersAsText, ...plugins, packageCollector(packages)],
+    plugins: [workersAsText, packageCollector(packages)],
     tsconfig: join(root, 'tsconfig.json'),
     // In Node, gltf-validator would call `require`, which a module has not; it runs there as in a browser.
     transform: { define: { 'process.versions': 'undefined' } },
@@ -250,46 +250,6 @@ function writeFiles() {
   writeLicences(out, packages);
 }
 
-/** What pages import, and from which entry: the rows of the table of sizes in src/threepoint/README.md. */
-const imports = {
-  Body: 'index',
-  BodyTracker: 'three',
-  'BodyTracker, loadAvatar': 'three',
-  SelfAvatar: 'react',
-  onnxNetworks: 'onnx',
-  exportMotion: 'motion',
-  installBodyTracking: 'polyfill',
-  pinning: 'trackers',
-};
-
-/**
- * Returns the bytes of a page's minified code with its static imports, plain and by brotli; without dynamic imports and
- * peers.
- */
-async function weigh(names, entry) {
-  const page = {
-    name: 'page',
-    resolveId: { filter: { id: /^page$/ }, handler: (id) => id },
-    load: {
-      filter: { id: /^page$/ },
-      handler: () => `export { ${names} } from ${JSON.stringify(join(out, `${entry}.js`))};`,
-    },
-  };
-  const build = await bundle({ entry: 'page' }, [page]);
-  const { output: files } = await build.generate({ format: 'esm', minify: true });
-  await build.close();
-  const needed = new Set();
-  const add = (file) => {
-    if (needed.has(file)) return;
-    needed.add(file);
-    for (const imported of files.find(({ fileName }) => fileName === file)?.imports ?? []) add(imported);
-  };
-  add('entry.js');
-  const code = files.filter(({ fileName }) => needed.has(fileName)).map((file) => Buffer.from(file.code));
-  const size = (buffers) => buffers.reduce((sum, { length }) => sum + length, 0);
-  return { min: size(code), brotli: size(code.map((buffer) => brotliCompressSync(buffer))) };
-}
-
 export const buildLibrary = () =>
   buildPackage('dist-library', async () => {
     rmSync(out, { recursive: true, force: true });
@@ -298,44 +258,3 @@ export const buildLibrary = () =>
     await writeTypes();
     writeFiles();
   });
-
-/** Returns the sizes by their rows in the table of src/threepoint/README.md. */
-async function measureSizes() {
-  const sizes = {};
-  for (const [names, entry] of Object.entries(imports)) sizes[`\`${names}\``] = await weigh(names, entry);
-  const weights = readFileSync(join(out, 'models/learned.bin'));
-  sizes["the learned network's weights"] = { min: weights.length, brotli: brotliCompressSync(weights).length };
-  return sizes;
-}
-
-/** Throws if src/threepoint/README.md or README.md states another size than the measured one. */
-function checkDocuments(sizes) {
-  const rows = Object.entries(sizes).map(([what, { min, brotli }]) => ({
-    what,
-    says: new RegExp(`^\\| ${what} \\| ([\\d.]+) kB \\| ([\\d.]+) kB \\|$`, 'm'),
-    bytes: [min, brotli],
-  }));
-  const sentence = {
-    what: 'BodyTracker, with and without loadAvatar',
-    says: /(\d+) kB of code as it travels \((\d+) kB without `loadAvatar`\)/,
-    bytes: [sizes['`BodyTracker, loadAvatar`'].brotli, sizes['`BodyTracker`'].brotli],
-  };
-  const stale = Object.entries({ 'src/threepoint/README.md': rows, 'README.md': [sentence] }).flatMap(
-    ([file, claims]) => staleSizes(file, readFileSync(join(root, file), 'utf8'), claims),
-  );
-  if (stale.length > 0) throw new SetupError(`${stale.join('.\n')}.`);
-}
-
-function printSizes(sizes) {
-  const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(10);
-  console.log(`${''.padEnd(32)}${'min'.padStart(10)}${'brotli'.padStart(10)}`);
-  for (const [what, { min, brotli }] of Object.entries(sizes))
-    console.log(`${what.padEnd(32)}${kilobytes(min)}${kilobytes(brotli)}`);
-}
-
-await mainOf(import.meta.url, async () => {
-  await buildLibrary();
-  const sizes = await measureSizes();
-  printSizes(sizes);
-  checkDocuments(sizes);
-});

@@ -22,22 +22,21 @@ const allowed = {
   'docs/study.md': /\btold\b/,
 };
 
-/**
- * Returns the comments of a TypeScript or JavaScript file: the line of the first character, and the text without marks.
- */
-function commentsOfScript(text, file) {
+/** Returns the number of the line with this position of a source file. */
+const lineAt = (source, position) => source.getLineAndCharacterOfPosition(position).line + 1;
+
+/** Returns the comments of a parsed file: the line of the first character, and the text without marks. */
+function commentsOfScript(source) {
+  const { text } = source;
   const found = [];
-  const add = (start, raw) => {
-    const line = text.slice(0, start).split('\n').length;
+  const add = (start, raw) =>
     found.push({
-      line,
+      line: lineAt(source, start),
       text: raw
         .replace(/^\/\*\*?|\*\/$|^\/\/\s?/g, '')
         .replace(/^\s*\* ?/gm, '')
         .trim(),
     });
-  };
-  const source = ts.createSourceFile(file, text, ts.ScriptTarget.Latest, true);
   const seen = new Set();
   // Tokens are children, too: a comment before a closing bracket belongs to none of the nodes.
   const visit = (node) => {
@@ -103,13 +102,12 @@ function* problemsOfComments(comments) {
 }
 
 /** Yields the problems of the titles of tests and of their groups; only a test's title must begin with its subject. */
-function* problemsOfTitles(text) {
-  const source = ts.createSourceFile('file.ts', text, ts.ScriptTarget.Latest, true);
+function* problemsOfTitles(source) {
   const visit = function* (node) {
     const [title] = node.arguments ?? [];
     const caller = ts.isCallExpression(node) && /^(test|it|describe)\b(.*)/.exec(node.expression.getText(source));
     if (caller && title && (ts.isStringLiteralLike(title) || ts.isTemplateExpression(title))) {
-      const line = source.getLineAndCharacterOfPosition(title.getStart(source)).line + 1;
+      const line = lineAt(source, title.getStart(source));
       const said = title.getText(source).slice(1, -1);
       const isGroup = caller[1] === 'describe' || caller[2].startsWith('.describe');
       if (!isGroup && continuation.test(said)) yield { line, what: `has a title without a subject: “${said}”` };
@@ -152,10 +150,9 @@ function problemsOfDocument(text, file) {
 
 function problemsOfFile(file, text) {
   if (file.endsWith('.md')) return problemsOfDocument(text, file);
-  const problems = [
-    ...problemsOfComments(file.endsWith('.py') ? commentsOfPython(text) : commentsOfScript(text, file)),
-  ];
-  if (/^(tests|e2e)\/.*\.ts$/.test(file)) problems.push(...problemsOfTitles(text));
+  const source = file.endsWith('.py') ? null : ts.createSourceFile(file, text, ts.ScriptTarget.Latest);
+  const problems = [...problemsOfComments(source ? commentsOfScript(source) : commentsOfPython(text))];
+  if (/^(tests|e2e)\/.*\.ts$/.test(file)) problems.push(...problemsOfTitles(source));
   text.split('\n').forEach((line, index) => {
     // Code is the formatters' to wrap, and an address has no place to break.
     if (line.length > longestLine && /^\s*(\*|\/\/|\/\*|#)/.test(line) && !/https?:\/\//.test(line)) {

@@ -1,26 +1,14 @@
 // Checks what the built packages promise: the links of their documents, the fields of their manifests, and by publint
 // and attw how Node, bundlers and the compiler resolve them. Checks dist-library's source maps and declaration maps, the
-// paths that its licence names, and the size of a bundle that imports one name of it.
+// paths that its licence names, and the sizes of what pages import from it.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
-import { build } from 'esbuild';
 import { packages } from './build-packages.mjs';
+import { wrongSizes } from './library-sizes.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const folder = join(root, 'dist-library');
 const folders = Object.values(packages).map(({ folder }) => join(root, folder));
-
-/** The largest minified bundle [kB] of a page that imports one name, without peers and what loads on demand. */
-const largestBundles = [
-  ['copyAvatarPose', 'index.js', 2.2],
-  ['calibrationProblem', 'core.js', 3.1],
-  ['forwardKinematics', 'index.js', 2.2],
-  ['parseRecording', 'index.js', 6.5],
-  ['toXRBody', 'motion.js', 27],
-  ['BodyTracker', 'three.js', 94],
-  ['loadAvatar', 'three.js', 141],
-  ['pinning', 'trackers.js', 18.5],
-];
 
 const filesOf = (folder) => readdirSync(folder, { recursive: true }).map((file) => join(folder, file));
 const files = filesOf(folder);
@@ -110,55 +98,20 @@ function missingFields(folder) {
     .map((field) => `${relative(root, folder)}/package.json has no ${field}`);
 }
 
-/** Returns the bytes of a minified bundle of this code with its static imports. */
-async function weigh(contents) {
-  const { peerDependencies } = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
-  const { outputFiles, metafile } = await build({
-    stdin: { contents, resolveDir: folder },
-    ...{ bundle: true, minify: true, format: 'esm', splitting: true, write: false, metafile: true, outdir: folder },
-    external: Object.keys(peerDependencies).flatMap((peer) => [peer, `${peer}/*`]),
-    logLevel: 'error',
-  });
-  const sizes = new Map(outputFiles.map(({ path, contents }) => [relative(root, path), contents.length]));
-  const needed = new Set();
-  const add = (path) => {
-    if (needed.has(path) || !sizes.has(path)) return;
-    needed.add(path);
-    for (const { path: imported, kind } of metafile.outputs[path].imports)
-      if (kind === 'import-statement') add(imported);
-  };
-  add('dist-library/stdin.js');
-  return [...needed].reduce((sum, path) => sum + sizes.get(path), 0);
-}
-
-async function largeBundles() {
-  const faults = [];
-  for (const [name, entry, largest] of largestBundles) {
-    const kilobytes = (await weigh(`export { ${name} } from './${entry}';`)) / 1000;
-    console.log(`${name.padEnd(24)}${kilobytes.toFixed(1).padStart(8)} kB of ${largest} kB`);
-    if (kilobytes > largest)
-      faults.push(`import { ${name} } costs ${kilobytes.toFixed(1)} kB, more than ${largest} kB`);
-  }
-  return faults;
-}
-
 /** Returns a message for each package that Node, bundlers or the compiler resolve wrongly. */
 async function wronglyResolved() {
   const faults = [];
   for (const folder of folders) {
-    const checks = [
-      ['publint', folder, '--strict'],
-      ['attw', '--pack', folder, '--profile', 'esm-only', '--quiet'],
-    ];
-    for (const check of checks)
-      if ((await run('npx', check)).code !== 0) faults.push(`${check[0]} has faults in ${relative(root, folder)}`);
+    // Without npx, which takes half a second to find each.
+    const checks = {
+      publint: ['node_modules/publint/src/cli.js', folder, '--strict'],
+      attw: ['node_modules/@arethetypeswrong/cli/dist/index.js', '--pack', folder, '--profile', 'esm-only', '--quiet'],
+    };
+    for (const [name, check] of Object.entries(checks))
+      if ((await run(process.execPath, check)).code !== 0)
+        faults.push(`${name} has faults in ${relative(root, folder)}`);
   }
   return faults;
-}
-
-/** Checks that a bundler keeps the module that answers a page's messages, though it exports nothing. */
-async function lostWorker() {
-  return (await weigh("import './onnx-worker.js';")) > 500 ? [] : ['a bundle of onnx-worker.js is empty'];
 }
 
 await main(async () => {
@@ -167,8 +120,7 @@ await main(async () => {
     ...faultyMaps(),
     ...missingMaps(),
     ...licencePaths(),
-    ...(await largeBundles()),
-    ...(await lostWorker()),
+    ...(await wrongSizes()),
     ...(await wronglyResolved()),
   ];
   if (faults.length > 0) throw new SetupError(`A package is not as it promises:\n${faults.join('\n')}`);

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { build } from 'esbuild';
 import { rolldown } from 'rolldown';
 import { packages } from './build-packages.mjs';
-import { main, root, run, runQuietly, SetupError } from './run-command.mjs';
+import { main, outputOf, root, run, SetupError } from './run-command.mjs';
 
 const folder = join(root, 'artifacts/library-consumer');
 const resolutions = [
@@ -20,12 +20,11 @@ const consumers = { 'consumer.ts': [], 'rooms-consumer.ts': [], 'relay-consumer.
 async function unpack(name) {
   const into = join(folder, 'node_modules', name);
   mkdirSync(into, { recursive: true });
-  const packed = await runQuietly('npm', ['pack', join(root, packages[name].folder), '--pack-destination', into]);
-  const tarball = readdirSync(into).find((file) => file.endsWith('.tgz'));
-  if (packed?.code !== 0 || !tarball) throw new SetupError(`npm pack failed:\n${packed?.output ?? 'npm is not there'}`);
-  const unpacked = await runQuietly('tar', ['-xzf', join(into, tarball), '-C', into, '--strip-components=1']);
-  if (unpacked?.code !== 0)
-    throw new SetupError(`${tarball} could not be unpacked:\n${unpacked?.output ?? 'tar is not there'}`);
+  const pack = ['pack', join(root, packages[name].folder), '--pack-destination', into];
+  await outputOf('npm', pack, `${name} could not be packed`);
+  const [tarball] = readdirSync(into);
+  const unpack = ['-xzf', join(into, tarball), '-C', into, '--strip-components=1'];
+  await outputOf('tar', unpack, `${tarball} could not be unpacked`);
 }
 
 /**
@@ -65,8 +64,7 @@ async function compileConsumer(consumer, types) {
 async function runProgram(name) {
   const program = join(folder, name);
   copyFileSync(join(root, 'examples', name), program);
-  const { code, output } = await run(process.execPath, [program], { capture: true });
-  if (code !== 0) throw new SetupError(`${name}, a program of Node, ends with code ${code}:\n${output}`);
+  await outputOf(process.execPath, [program], `${name}, a program of Node, fails`);
 }
 
 /**
@@ -83,8 +81,8 @@ async function bundleWeights() {
   const bundle = await rolldown({ input: program, logLevel: 'silent' });
   await bundle.write({ dir: out('rolldown') });
   for (const bundler of ['esbuild', 'rolldown']) {
-    const { code, output } = await run(process.execPath, [join(out(bundler), 'weights.js')], { capture: true });
-    if (code !== 0) throw new SetupError(`A bundle by ${bundler} does not load the learned network:\n${output}`);
+    const fault = `A bundle by ${bundler} does not load the learned network`;
+    await outputOf(process.execPath, [join(out(bundler), 'weights.js')], fault);
   }
 }
 
@@ -101,8 +99,7 @@ async function importWithoutBrowser() {
   const imports = entries.filter((entry) => entry !== 'threepoint/onnx-worker').map((entry) => `import '${entry}';`);
   const program = join(folder, 'without-browser.mjs');
   writeFileSync(program, imports.join('\n'));
-  const { code, output } = await run(process.execPath, [program], { capture: true });
-  if (code !== 0) throw new SetupError(`An entry cannot be imported without a browser:\n${output}`);
+  await outputOf(process.execPath, [program], 'An entry cannot be imported without a browser');
 }
 
 await main(async () => {

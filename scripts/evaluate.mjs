@@ -1,14 +1,10 @@
-// npm run tool -- evaluate --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,014] [--models DIR]
-// [--robustness] [--noise FILE] [--speed] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]:
-// evaluates the shipping code path on recorded motion. Python prepares the recordings with their ground truth;
-// TypeScript runs the estimators on them. npm run tool -- evaluate --recording FILE [--recording FILE] [--json FILE]
-// [--models DIR]: evaluates on recordings of the page, with the body that the device reported as ground truth.
-import { mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+// npm run tool -- evaluate: evaluates the shipping code path on recorded motion. Python prepares the recordings with
+// their ground truth; TypeScript runs the estimators on them. With --recording it evaluates on recordings of the page,
+// with the body that the device reported as ground truth.
 import { join } from 'node:path';
 import { readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { prepareRecordings } from './python-environment.mjs';
+import { withRecordings } from './python-environment.mjs';
 import { main, root, runProgram } from './run-command.mjs';
 
 const usage =
@@ -44,13 +40,6 @@ await main(async () => {
   const given = { models: join(root, 'public/models'), ...options() };
   await ensureInstalled();
   if (given.recording) return runProgram('bench/evaluate/recorded.ts', [JSON.stringify(given)]);
-  const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
-  try {
-    const code = await prepareRecordings(given, recordings);
-    if (code !== 0) return code;
-    const program = given.legs ? 'bench/evaluate/legs/legs.ts' : 'bench/evaluate/main.ts';
-    return await runProgram(program, [JSON.stringify({ ...given, recordings })]);
-  } finally {
-    rmSync(recordings, { recursive: true, force: true });
-  }
+  const program = given.legs ? 'bench/evaluate/legs/legs.ts' : 'bench/evaluate/main.ts';
+  return withRecordings(given, (recordings) => runProgram(program, [JSON.stringify({ ...given, recordings })]));
 });

@@ -1,13 +1,12 @@
-// npm run tool -- paper --mocap DIR [--skeleton MAP.json] [--stages NAME,NAME]: reproduces what the paper reports
-// without participants: trains the readings of its network stage by stage, measures the page's code path and the time
-// of the method, and writes the tables and figures of docs/paper.md. A finished stage is not run again.
+// npm run tool -- paper: reproduces what the paper reports without participants: trains the readings of its network
+// stage by stage, measures the page's code path and the time of the method, and writes the tables and figures of
+// docs/paper.md. A finished stage is not run again.
 import { createHash } from 'node:crypto';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, mkdirSync, readFileSync, renameSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { prepareRecordings, runTraining } from './python-environment.mjs';
+import { reportPeople, runTraining, withRecordings } from './python-environment.mjs';
 import { main, root, runProgram, SetupError } from './run-command.mjs';
 
 const usage =
@@ -23,31 +22,21 @@ function options() {
 }
 
 /** Returns the people outside the lockbox that the page's paper network was not trained on, separated by commas. */
-async function newPeople(given) {
-  const { code, output } = await runTraining('threepoint_training.report_people', passedOn(given, ['mocap']), {
-    capture: true,
-  });
-  if (code !== 0) throw new SetupError(`paper: ${output.trim()}\n${usage}`);
-  const people = JSON.parse(output).paper.join(',');
-  if (people === '') throw new SetupError(`paper: ${given.mocap} has no one outside the lockbox.`);
-  return people;
+async function newPeople({ mocap }) {
+  const { paper } = await reportPeople(mocap);
+  if (paper.length === 0) throw new SetupError(`paper: ${mocap} has no one outside the lockbox.`);
+  return paper.join(',');
 }
 
 /** Measures the page's code path on these people; resolves to an exit code. */
-async function measurePath(given, people, file) {
-  const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
-  try {
-    const prepared = await prepareRecordings({ ...given, people }, recordings);
-    if (prepared !== 0) return prepared;
+const measurePath = (given, people, file) =>
+  withRecordings({ ...given, people }, async (recordings) => {
     // A run that ends half-way leaves no file that looks finished.
     const json = `${file}.unfinished`;
-    const measured = await runProgram('bench/evaluate/paper.ts', [JSON.stringify({ recordings, models, json })]);
-    if (measured === 0) renameSync(json, file);
-    return measured;
-  } finally {
-    rmSync(recordings, { recursive: true, force: true });
-  }
-}
+    const code = await runProgram('bench/evaluate/paper.ts', [JSON.stringify({ recordings, models, json })]);
+    if (code === 0) renameSync(json, file);
+    return code;
+  });
 
 await main(async () => {
   const given = options();

@@ -1,8 +1,9 @@
 import { createHash } from 'node:crypto';
-import { existsSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { passedOn } from './command-line.mjs';
-import { installWithApt, root, run, runQuietly, SetupError } from './run-command.mjs';
+import { installWithApt, outputOf, root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const projectFile = join(root, 'training/pyproject.toml');
 /** The installer of the packages in pyproject.toml; nothing else needs it. */
@@ -44,8 +45,8 @@ project = tomllib.load(open(sys.argv[1], 'rb'))['project']
 optional = project.get('optional-dependencies', {})
 for requirement in project.get('dependencies', []) + [r for extra in sys.argv[2:] for r in optional[extra]]:
     print(requirement)`;
-  const { code, output } = await runQuietly(python, ['-c', script, projectFile, ...extras]);
-  if (code !== 0) throw new SetupError(`training/pyproject.toml could not be read:\n${output.trim()}`);
+  const read = ['-c', script, projectFile, ...extras];
+  const output = await outputOf(python, read, 'training/pyproject.toml could not be read');
   return output.trim().split(/\r?\n/).filter(Boolean);
 }
 
@@ -107,10 +108,34 @@ export async function runTraining(module, args, { extras = [], ...options } = {}
 }
 
 /**
+ * Returns the people of a folder of motion capture whom the report measures: those of its tables, those whom the page's
+ * paper network was not trained on, and those of another laboratory.
+ */
+export async function reportPeople(mocap) {
+  const list = ['--mocap', mocap];
+  const { code, output } = await runTraining('threepoint_training.report_people', list, { capture: true });
+  if (code !== 0) throw new SetupError(output.trim());
+  return JSON.parse(output);
+}
+
+/**
  * Prepares motion capture: recordings with the ground truth, in the folder `out`. `given`: the options mocap, skeleton
  * and people of an npm script. Resolves to an exit code.
  */
 export async function prepareRecordings(given, out, options) {
   const args = passedOn({ ...given, out }, ['people', 'mocap', 'skeleton', 'out']);
   return (await runTraining('threepoint_training.recordings', args, options)).code;
+}
+
+/**
+ * Prepares motion capture in a temporary folder, which `work` reads and may write into; it is deleted, because it holds
+ * motion data. `work` returns an exit code. Resolves to it, or to that of a preparation which failed.
+ */
+export async function withRecordings(given, work, options) {
+  const folder = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
+  try {
+    return (await prepareRecordings(given, folder, options)) || (await work(folder));
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
 }

@@ -1,8 +1,7 @@
-// npm run tool -- renew --mocap DIR [--from STEP] [--only STEP] [--list]: renews the networks, and every table and
-// figure of docs/accuracy.md, step by step.
+// npm run tool -- renew: renews the networks, and every table and figure of docs/accuracy.md, step by step.
 import { join } from 'node:path';
 import { readOptions } from './command-line.mjs';
-import { mainOf, root, run, SetupError, typedPath } from './run-command.mjs';
+import { mainOf, root, run, typedPath } from './run-command.mjs';
 import { scriptOf } from './tool.mjs';
 
 const usage =
@@ -72,67 +71,50 @@ export const steps = [
 ];
 
 /** Returns the selected steps: all, those from one on, or one. */
-function chosenSteps({ from, only } = {}) {
-  if (from !== undefined && only !== undefined) throw new SetupError('renew: either --from or --only');
+function chosenSteps({ from, only }) {
   const name = from ?? only;
   if (name === undefined) return steps;
   const first = steps.findIndex((step) => step.name === name);
-  if (first < 0) {
-    throw new SetupError(`renew: there is no step “${name}”; there are ${steps.map((step) => step.name).join(', ')}`);
-  }
+  if (first < 0) throw new Error(`there is no step “${name}”; there are ${steps.map((step) => step.name).join(', ')}`);
   return steps.slice(first, only === undefined ? steps.length : first + 1);
 }
 
 /** Returns the arguments with which Node runs a step. */
 export const commandOf = ({ script, options }, mocap) => [scriptOf(script), '--mocap', mocap, ...options];
 
-/** Returns the command line of a tool, with its options quoted for a shell. */
-const commandLine = (script, ...options) =>
-  ['npm', 'run', 'tool', '--', script, ...options]
-    .map((word) => (/[^\w./:-]/.test(word) ? `"${word}"` : word))
-    .join(' ');
-
 /** Returns the command line of a step. */
-const commandLineOf = ({ script, options }, mocap) => commandLine(script, '--mocap', mocap, ...options);
+const commandLineOf = ({ script, options }, mocap) =>
+  ['npm', 'run', 'tool', '--', script, '--mocap', mocap, ...options].join(' ');
 
-function options() {
-  return readOptions('renew', usage, { texts: ['mocap', 'from', 'only'], flags: ['list'] }, ({ mocap, list }) => {
-    if (!mocap && !list) throw new Error('--mocap is needed');
-  });
-}
-
-/** Formats seconds as 1:02:03. */
-function duration(milliseconds) {
-  const seconds = Math.round(milliseconds / 1000);
-  const two = (value) => `${value}`.padStart(2, '0');
-  return `${Math.floor(seconds / 3600)}:${two(Math.floor(seconds / 60) % 60)}:${two(seconds % 60)}`;
-}
-
-function list(chosen, mocap) {
-  for (const step of chosen)
-    console.log(`${step.name}: ${step.renews}; about ${step.takes}\n  ${commandLineOf(step, mocap)}`);
-  return 0;
-}
+const summaryOf = ({ name, renews, takes }) => `${name}: ${renews}; about ${takes}`;
 
 await mainOf(import.meta.url, async () => {
-  const { mocap = 'DIR', ...given } = options();
-  const chosen = chosenSteps(given);
-  if (given.list) return list(chosen, mocap);
+  const known = { texts: ['mocap', 'from', 'only'], flags: ['list'] };
+  let chosen;
+  const {
+    mocap = 'DIR',
+    list,
+    only,
+  } = readOptions('renew', usage, known, (given) => {
+    if (!given.mocap && !given.list) throw new Error('--mocap is needed');
+    if (given.from !== undefined && given.only !== undefined) throw new Error('either --from or --only');
+    chosen = chosenSteps(given);
+  });
+  if (list) {
+    for (const step of chosen) console.log(`${summaryOf(step)}\n  ${commandLineOf(step, mocap)}`);
+    return 0;
+  }
   const folder = typedPath(mocap);
   for (const [number, step] of chosen.entries()) {
-    const title = `renew ${number + 1} of ${chosen.length}, ${step.name}`;
-    console.log(`\n${title}: ${step.renews}; about ${step.takes}\n${commandLineOf(step, folder)}`);
-    const start = performance.now();
+    console.log(`\nrenew ${number + 1} of ${chosen.length}, ${summaryOf(step)}\n${commandLineOf(step, folder)}`);
     const { code } = await run(process.execPath, commandOf(step, folder));
-    const took = duration(performance.now() - start);
     if (code !== 0) {
-      const again = commandLine('renew', '--mocap', mocap, given.only ? '--only' : '--from', step.name);
       console.error(
-        `\nrenew: the step ${step.name} ended with exit code ${code} after ${took}; its messages are above. Correct the fault, then go on with\n  ${again}`,
+        `\nrenew: the step ${step.name} ended with exit code ${code}; its messages are above. Correct the fault, then go on with\n` +
+          `  npm run tool -- renew --mocap ${mocap} ${only ? '--only' : '--from'} ${step.name}`,
       );
       return code;
     }
-    console.log(`${title}: took ${took}`);
   }
   return 0;
 });

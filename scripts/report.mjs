@@ -1,12 +1,11 @@
-// npm run tool -- report --mocap DIR [--people 005,014] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the
-// shipping code path with the cross-validation networks of npm run tool -- train, each on people it was not trained on,
-// and renews the tables and figures of docs/accuracy.md. npm run tool -- report --redraw: renews them from the last
-// measurement. npm run tool -- report --legs --mocap DIR: renews the table of legs alone, with the page's network for
-// the body and the cross-validation networks of npm run tool -- train:gait.
+// npm run tool -- report: measures the shipping code path with the cross-validation networks of npm run tool -- train,
+// each on people it was not trained on, and renews the tables and figures of docs/accuracy.md; --redraw renews them
+// from the last measurement. --legs renews the table of legs alone, with the page's network for the body and the
+// cross-validation networks of npm run tool -- train:gait.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';
-import { runTraining } from './python-environment.mjs';
+import { reportPeople, runTraining } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
@@ -61,17 +60,9 @@ const laboratories = Object.fromEntries(
   ]),
 );
 
-/** Returns the people of the tables and of another laboratory; Python maps files to people. */
-async function peopleIn(mocap) {
-  const list = ['--mocap', mocap];
-  const { code, output } = await runTraining('threepoint_training.report_people', list, { capture: true });
-  if (code !== 0) throw new SetupError(`report: ${output.trim()}\n${usage}`);
-  return JSON.parse(output);
-}
-
 /** Measures the data of all tables and figures except those of legs; resolves to an exit code. */
 async function measure(given, models, { evaluation, figures }) {
-  const there = await peopleIn(given.mocap);
+  const there = await reportPeople(given.mocap);
   mkdirSync(measured, { recursive: true });
   // Earlier results are deleted, because they may be from other networks or people.
   for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });

@@ -91,6 +91,13 @@ export async function runQuietly(command, args, options = {}) {
   }
 }
 
+/** Resolves to the output of a program; rejects with a SetupError of this fault and the output if it fails. */
+export async function outputOf(command, args, fault, options) {
+  const result = await runQuietly(command, args, options);
+  if (result?.code !== 0) throw new SetupError(`${fault}:\n${result?.output.trim() ?? `${command} is not there`}`);
+  return result.output;
+}
+
 /** Installs packages of Debian or Ubuntu, as root on such a system only. Resolves to whether it could. */
 export async function installWithApt(...packages) {
   if (process.getuid?.() !== 0 || (await runQuietly('apt-get', ['--version'])) === null) return false;

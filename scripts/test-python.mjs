@@ -9,5 +9,7 @@ await main(async () => {
   const python = await pythonEnvironment({ extras: trains ? ['train'] : [] });
   const marker = trains ? 'training' : 'not training';
   const pytest = ['-m', 'pytest', 'training', '-m', marker, '-p', 'no:cacheprovider'];
-  return (await run(python, [...pytest, `--junitxml=${reports}/python.xml`])).code;
+  // The matrices are small: threads for them wait for each other most of the time.
+  const env = { OPENBLAS_NUM_THREADS: '1' };
+  return (await run(python, [...pytest, `--junitxml=${reports}/python.xml`], { env })).code;
 });

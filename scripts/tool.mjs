@@ -23,8 +23,8 @@ const programs = {
   /** Measures how many clients a relay process carries, next to a plain socket.io relay. */
   'bench:relay': {
     program: 'bench/relay/main.ts',
-    usage: 'npm run tool -- bench:relay [--json FILE] [--quick] [--rooms N] [--hz N] [--seconds N] [--count N]',
-    options: { texts: ['rooms', 'hz', 'seconds', 'count'], paths: ['json'], flags: ['quick'] },
+    usage: 'npm run tool -- bench:relay [--json FILE] [--quick] [--rooms N,N] [--hz N,N] [--seconds N]',
+    options: { texts: ['rooms', 'hz', 'seconds'], paths: ['json'], flags: ['quick'] },
   },
   /** Measures concurrent participants of a study on one server. --flush-ms delays each flush of the disk, by strace. */
   'bench:study': {
@@ -54,6 +54,14 @@ const programs = {
       if (!given.to) throw new Error('--to is needed');
     },
     argumentsOf: ({ rest: [file], ...given }) => [JSON.stringify({ ...given, file })],
+  },
+  /** Runs the tests that report figures of docs/reliability.json, and writes docs/reliability.md. */
+  reliability: {
+    program: 'scripts/reliability/main.ts',
+    usage:
+      'npm run tool -- reliability [--unit | --long | --redraw]\n' +
+      '--unit: without a browser. --long: also twenty minutes of play. --redraw: writes the page from the last figures.',
+    options: { flags: ['unit', 'long', 'redraw'] },
   },
   /** Prints the errors of a plan, or its duration and what its participants see. */
   'study:check': {
@@ -106,7 +114,7 @@ const programs = {
 
 /** The tools that are scripts of their own. */
 export const scriptTools = [
-  ...['train', 'train:gait', 'evaluate', 'report', 'paper', 'goldens', 'renew', 'reliability'],
+  ...['train', 'train:gait', 'evaluate', 'report', 'paper', 'goldens', 'renew'],
   ...['pictures', 'bench', 'avatars:fetch', 'avatars:try'],
 ];
 

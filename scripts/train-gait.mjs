@@ -1,13 +1,11 @@
-// npm run tool -- train:gait --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]: trains the
-// network that predicts footsteps. Python prepares the motion, the page's own code computes the inputs, Python trains.
-// It trains without each of four groups of people (.cache/gait, for npm run tool -- report --legs), then on all people
-// (src/threepoint/core/estimation/gait/gait-network.json).
-import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+// npm run tool -- train:gait: trains the network that predicts footsteps. Python prepares the motion, the page's own
+// code computes the inputs, Python trains. It trains without each of four groups of people (.cache/gait, for npm run
+// tool -- report --legs), then on all people (src/threepoint/core/estimation/gait/gait-network.json).
+import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { passedOn, readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { prepareRecordings, runTraining } from './python-environment.mjs';
+import { runTraining, withRecordings } from './python-environment.mjs';
 import { main, root, runProgram } from './run-command.mjs';
 
 const usage = 'npm run tool -- train:gait --mocap DIR [--skeleton MAP.json] [--people 001,002] [--steps N] [--seed N]';
@@ -19,21 +17,17 @@ await main(async () => {
     if (!mocap) throw new Error('--mocap is needed');
   });
   await ensureInstalled();
-  // Recordings and inputs are motion data: they are deleted.
-  const folder = mkdtempSync(join(tmpdir(), 'threepoint-gait-'));
-  const [recordings, frames] = ['recordings', 'frames'].map((name) => join(folder, name));
   const heldOut = join(root, '.cache/gait');
   rmSync(heldOut, { recursive: true, force: true });
   mkdirSync(heldOut, { recursive: true });
-  const inputs = JSON.stringify({ recordings, out: frames, models: join(root, 'public/models') });
-  const training = ['--frames', frames, '--held-out', heldOut, ...passedOn(given, ['steps', 'seed'])];
-  try {
+  const train = async (recordings) => {
+    const frames = join(recordings, 'frames');
+    const inputs = JSON.stringify({ recordings, out: frames, models: join(root, 'public/models') });
+    const training = ['--frames', frames, '--held-out', heldOut, ...passedOn(given, ['steps', 'seed'])];
     return (
-      (await prepareRecordings(given, recordings, python)) ||
       (await runProgram('bench/evaluate/legs/gait-frames.ts', [inputs])) ||
       (await runTraining('threepoint_training.train_gait', training, python)).code
     );
-  } finally {
-    rmSync(folder, { recursive: true, force: true });
-  }
+  };
+  return withRecordings(given, train, python);
 });

@@ -5,12 +5,12 @@ import {
   skeletonFromCalibration,
   type TrackingFrame,
 } from 'threepoint/core';
-import type { Vec3 } from 'threepoint/math';
+import { transformPoint, type Vec3 } from 'threepoint/math';
 import { createIk, createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
 import { copyJoints, type JointPositions } from '../../src/threepoint/core/estimation/joint-positions';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import type { MeasuredFrame } from './measures';
-import type { RecordedFrame } from './recordings';
+import type { StagedFrame } from './situations';
 
 /** Methods that have a body to measure; hands-only has none. */
 export const measuredMethods = ['ik', 'paper', 'learned'] as const satisfies readonly EstimatorName[];
@@ -75,19 +75,30 @@ export function createDriver(
   };
 }
 
-/** Drives the shipping path over one clip, frame by frame as the page would. */
+/** Drives the shipping path over one clip, frame by frame as the page would; joints and wrists on the truth's floor. */
 export async function drive(
   name: DrivenMethod,
   calibration: Calibration,
   regressor: PoseRegressor | null,
-  frames: readonly RecordedFrame[],
+  frames: readonly StagedFrame[],
 ): Promise<(MeasuredFrame & TimedFrame)[]> {
   const driver = createDriver(name, calibration, regressor);
   const result: (MeasuredFrame & TimedFrame)[] = [];
-  for (const { frame, truth } of frames) {
+  for (const { frame, truth, reset, truthFromFloor } of frames) {
+    if (reset) driver.reset();
+    const { joints, raw, cpuMilliseconds } = await driver.draw(frame);
+    const onTruthsFloor = (point: Vec3) => (truthFromFloor ? transformPoint(truthFromFloor, point) : point);
     const { leftHand, rightHand } = frame;
-    const wrists = { left: leftHand?.position ?? null, right: rightHand?.position ?? null };
-    result.push({ ...(await driver.draw(frame)), truth, wrists });
+    result.push({
+      joints: Object.fromEntries(Object.entries(joints).map(([joint, point]) => [joint, onTruthsFloor(point)])),
+      raw: truthFromFloor ? null : raw,
+      cpuMilliseconds,
+      truth,
+      wrists: {
+        left: leftHand && onTruthsFloor(leftHand.position),
+        right: rightHand && onTruthsFloor(rightHand.position),
+      },
+    });
   }
   return result;
 }

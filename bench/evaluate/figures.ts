@@ -2,7 +2,7 @@ import { recordOf } from 'threepoint/core';
 import { add, cross, distance, dot, length, normalise, scale, subtract, up, type Vec3, vec3 } from 'threepoint/math';
 import { mean } from '../../src/threepoint/core/math/statistics';
 import { type DrivenMethod, type MeasuredMethod, measuredMethods } from './drive';
-import { type MeasuredFrame, rounded } from './measures';
+import { jointOf, type MeasuredFrame, rounded } from './measures';
 import { type TruthJoint, truthJoints } from './recordings';
 
 /** The six motions of the paper's figure 7. */
@@ -100,7 +100,7 @@ type Pictured = Readonly<
 export function addFigures(collection: FigureCollection, clip: string, driven: Driven, rateHz: number): void {
   const errors = (name: MeasuredMethod): number[] =>
     driven[name].map(({ joints, truth }) =>
-      rounded(distance(pointOf(joints, 'rightUpperArm'), truth.rightUpperArm) * 100, 2),
+      rounded(distance(jointOf(joints, 'rightUpperArm'), truth.rightUpperArm) * 100, 2),
     );
   collection.traces.push({
     clip,
@@ -127,19 +127,13 @@ export function addPictures(pictures: FigureCollection['poses'], clip: string, d
   }
 }
 
-function pointOf(joints: Readonly<Record<string, Vec3>>, name: string): Vec3 {
-  const point = joints[name];
-  if (!point) throw new Error(`the estimator gave no ${name}`);
-  return point;
-}
-
 /** The joints of a frame as they were and as each method gives them, in the axes of `PictureOfMotion`. */
 function bodiesAt(driven: Pictured, row: number): PictureOfMotion['bodies'] {
   const { truth } = driven.ik[row] as MeasuredFrame;
   const { right, forward } = shoulderFrame(truth);
   const seen = (joints: Readonly<Record<string, Vec3>>): Points =>
     recordOf(truthJoints, (name) => {
-      const from = subtract(pointOf(joints, name), { ...truth.hips, y: 0 });
+      const from = subtract(jointOf(joints, name), { ...truth.hips, y: 0 });
       return [dot(from, right), from.y, -dot(from, forward)].map((value) => rounded(value, 4));
     }) as unknown as Points;
   return {

@@ -4,7 +4,7 @@
 
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { tableRow } from '../table-row';
+import { recordOf } from 'threepoint/core';
 import { createDriver, measuredMethods } from './drive';
 import { loadRegressors } from './networks';
 import { measureResponse, measureTremble, standing } from './response';
@@ -13,21 +13,20 @@ const joints = ['rightLowerArm', 'rightUpperArm', 'hips'] as const;
 const frequencies = [1, 2, 4] as const;
 
 const regressors = await loadRegressors(join(fileURLToPath(new URL('../..', import.meta.url)), 'public/models'));
-const row = (label: string, cells: readonly string[]) => console.log(tableRow(label, cells, 48, 16));
-row('lag [ms] / amplitude', joints);
+/** The lag [ms] and the amplitude of each joint, or its trembling [mm], by what moves. */
+const rows: Record<string, Readonly<Record<string, string>>> = {};
 for (const name of measuredMethods) {
   const driver = () => createDriver(name, standing, regressors.get(name) ?? null);
   for (const point of ['head', 'rightHand'] as const) {
     const responses = await measureResponse(driver, point, frequencies, joints);
-    frequencies.forEach((hz, index) => {
-      const cells = joints.map((joint) => {
+    for (const [index, hz] of frequencies.entries()) {
+      rows[`${name}, ${point} at ${hz} Hz: lag [ms] / amplitude`] = recordOf(joints, (joint) => {
         const response = responses[index]?.[joint];
         return response ? `${response.lagMs.toFixed(0)} / ${response.gain.toFixed(2)}` : '–';
       });
-      row(`${name}, ${point} at ${hz} Hz`, cells);
-    });
+    }
   }
   const tremble = await measureTremble(driver(), joints);
-  const cells = joints.map((joint) => (tremble[joint] ?? 0).toFixed(2));
-  row(`${name}, standing still [mm]`, cells);
+  rows[`${name}, standing still [mm]`] = recordOf(joints, (joint) => (tremble[joint] ?? 0).toFixed(2));
 }
+console.table(rows);

@@ -1,7 +1,7 @@
 import { estimatedJoints } from 'threepoint/core';
 import { distance } from 'threepoint/math';
 import { aftermathSeconds, type Loss } from './disturbances';
-import { type MeasuredFrame, rounded } from './measures';
+import { jointOf, type MeasuredFrame, rounded } from './measures';
 
 /** Errors [cm] in some frames, with the hand lost and, in the same frames, seen. */
 export interface LossErrors {
@@ -14,10 +14,8 @@ export interface LossErrors {
 /** How far a shown joint moves in one frame. */
 export interface LongestStep {
   readonly stepCm: number;
-  readonly joint: string;
   /** The largest part of a step that the same joint does not make in the same frame with the hand seen. */
   readonly excessCm: number;
-  readonly excessJoint: string;
   /** Losses with an excess over 5 cm. */
   readonly over5Cm: number;
 }
@@ -36,7 +34,7 @@ export interface LossReport {
 const noSums = () => ({ all: 0, allSeen: 0, joints: 0, elbow: 0, elbowSeen: 0, elbows: 0 });
 type Sums = ReturnType<typeof noSums>;
 
-const noSteps = () => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
+const noSteps = () => ({ step: 0, excess: 0, over: 0 });
 type StepTally = ReturnType<typeof noSteps>;
 
 /** What losses of one kind did; add clip by clip, then report. */
@@ -72,7 +70,7 @@ export function addLosses(tally: LossTally, estimated: Estimated, losses: readon
 function addErrors(sums: Sums, { lossy, seen }: Estimated, side: Loss['side'], from: number, to: number): void {
   for (let row = from; row < Math.min(to, lossy.length); row++) {
     for (const joint of estimatedJoints) {
-      const [a, b] = [errorOf(lossy[row], joint), errorOf(seen[row], joint)];
+      const [a, b] = [errorOf(lossy[row]!, joint), errorOf(seen[row]!, joint)];
       sums.all += a;
       sums.allSeen += b;
       sums.joints += 1;
@@ -85,29 +83,22 @@ function addErrors(sums: Sums, { lossy, seen }: Estimated, side: Loss['side'], f
   }
 }
 
-function errorOf(frame: MeasuredFrame | undefined, joint: (typeof estimatedJoints)[number]): number {
-  const estimated = frame?.joints[joint];
-  if (!frame || !estimated) throw new Error(`the estimator gave no ${joint}`);
-  return distance(estimated, frame.truth[joint]) * 100;
-}
+const errorOf = ({ joints, truth }: MeasuredFrame, joint: (typeof estimatedJoints)[number]): number =>
+  distance(jointOf(joints, joint), truth[joint]) * 100;
 
 /** Steps into the frames [from, to), in centimetres per 1/60 s at any rate. */
 function addSteps(tally: StepTally, { lossy, seen }: Estimated, from: number, to: number, rateHz: number): void {
-  const step = (frames: readonly MeasuredFrame[], row: number, joint: string): number => {
-    const [before, now] = [frames[row - 1]?.joints[joint], frames[row]?.joints[joint]];
-    if (!before || !now) throw new Error(`the estimator gave no ${joint}`);
-    return (distance(before, now) * 100 * rateHz) / 60;
-  };
+  const step = (frames: readonly MeasuredFrame[], row: number, joint: string): number =>
+    (distance(jointOf(frames[row - 1]!.joints, joint), jointOf(frames[row]!.joints, joint)) * 100 * rateHz) / 60;
   let worst = 0;
   for (let row = Math.max(1, from); row < to; row++) {
-    for (const joint of Object.keys(lossy[row]?.joints ?? {})) {
+    for (const joint of Object.keys(lossy[row]!.joints)) {
       const moved = step(lossy, row, joint);
-      const excess = moved - step(seen, row, joint);
-      worst = Math.max(worst, excess);
-      if (moved > tally.step) Object.assign(tally, { step: moved, joint });
-      if (excess > tally.excess) Object.assign(tally, { excess, excessJoint: joint });
+      tally.step = Math.max(tally.step, moved);
+      worst = Math.max(worst, moved - step(seen, row, joint));
     }
   }
+  tally.excess = Math.max(tally.excess, worst);
   if (worst > 5) tally.over += 1;
 }
 
@@ -117,11 +108,9 @@ const lossErrors = ({ all, allSeen, joints, elbow, elbowSeen, elbows }: Sums): L
   elbowCm: rounded(elbow / elbows, 3),
   elbowSeenCm: rounded(elbowSeen / elbows, 3),
 });
-const longestStep = ({ step, joint, excess, excessJoint, over }: StepTally): LongestStep => ({
+const longestStep = ({ step, excess, over }: StepTally): LongestStep => ({
   stepCm: rounded(step, 2),
-  joint,
   excessCm: rounded(excess, 2),
-  excessJoint,
   over5Cm: over,
 });
 

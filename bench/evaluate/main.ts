@@ -7,7 +7,6 @@ import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addFigures, emptyCollection, figuresOf } from './figures';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, merge, type Report, report } from './measures';
 import { loadRegressors } from './networks';
-import { addReach, emptyReach, mergeReaches, type Reach, reachReport, reachText } from './reach';
 import { calibrationOf, peopleOf, type RecordingIndex, readClip, readIndex } from './recordings';
 import { printReports } from './report-text';
 import { chooseClips, measureRobustness, robustnessText } from './robustness';
@@ -62,7 +61,6 @@ async function readCorpus(recordings: string, models: string, fp32: string | und
 
 interface Measured {
   readonly byPerson: ReadonlyMap<string, Record<MeasuredMethod, Measures>>;
-  readonly reaches: ReadonlyMap<string, Reach>;
   readonly exact: ReadonlyMap<MeasuredMethod, Measures>;
   readonly collection: ReturnType<typeof emptyCollection>;
   readonly frames: number;
@@ -72,7 +70,6 @@ interface Measured {
 async function measureClips(corpus: Corpus): Promise<Measured> {
   const { recordings, index, regressors, exactRegressors, judged } = corpus;
   const byPerson = new Map<string, Record<MeasuredMethod, Measures>>();
-  const reaches = new Map<string, Reach>();
   const exact = new Map<MeasuredMethod, Measures>();
   const collection = emptyCollection();
   const total = index.clips.reduce((sum, clip) => sum + clip.frames, 0);
@@ -82,9 +79,6 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
     const person = byPerson.get(clip.person) ?? recordOf(measuredMethods, emptyMeasures);
     byPerson.set(clip.person, person);
     const frames = readClip(recordings, index, clip);
-    const reach = reaches.get(clip.person) ?? emptyReach();
-    reaches.set(clip.person, reach);
-    addReach(reach, calibration, frames);
     const driven = {} as Record<MeasuredMethod, MeasuredFrame[]>;
     for (const name of measuredMethods) {
       driven[name] = await drive(name, calibration, regressors.get(name) ?? null, frames);
@@ -101,11 +95,11 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
     done += clip.frames;
     progress(done / total, clip.name);
   }
-  return { byPerson, reaches, exact, collection, frames: total };
+  return { byPerson, exact, collection, frames: total };
 }
 
 /** The measures as reports, of everyone, of those never trained on and of each person. */
-function resultOf({ index, people, seen, unseen }: Corpus, { byPerson, reaches, exact, frames }: Measured) {
+function resultOf({ index, people, seen, unseen }: Corpus, { byPerson, exact, frames }: Measured) {
   const over = (who: readonly string[]): Record<MeasuredMethod, Report> =>
     recordOf(measuredMethods, (name) => report(merge(who.flatMap((person) => byPerson.get(person)?.[name] ?? []))));
   return {
@@ -114,18 +108,12 @@ function resultOf({ index, people, seen, unseen }: Corpus, { byPerson, reaches, 
       people: people.length,
       frames,
       seconds: Number((frames / index.rateHz).toFixed(1)),
-      reach: reachReport(mergeReaches([...reaches.values()])),
     },
     estimators: over(people),
     ...(unseen.length > 0 && unseen.length < people.length
       ? { unseen: over(unseen), seen: over(people.filter((person) => seen.has(person))) }
       : {}),
-    people: Object.fromEntries(
-      people.map((person) => [
-        person,
-        { seen: seen.has(person), reach: reachReport(reaches.get(person) ?? emptyReach()), ...over([person]) },
-      ]),
-    ),
+    people: Object.fromEntries(people.map((person) => [person, { seen: seen.has(person), ...over([person]) }])),
     ...(exact.size > 0
       ? { fp32: Object.fromEntries([...exact].map(([name, measures]) => [name, report(measures)])) as Exact }
       : {}),
@@ -133,16 +121,11 @@ function resultOf({ index, people, seen, unseen }: Corpus, { byPerson, reaches, 
   };
 }
 
-function printResult(
-  { index, people, seen, unseen }: Corpus,
-  result: ReturnType<typeof resultOf>,
-  reaches: Measured['reaches'],
-): void {
+function printResult({ index, people, seen, unseen }: Corpus, result: ReturnType<typeof resultOf>): void {
   console.log(
     `\n${result.corpus.clips} clips, ${result.corpus.people} people, ${(result.corpus.seconds / 60).toFixed(1)} minutes at ${index.rateHz} Hz`,
   );
   for (const problem of index.problems) console.log(`  ${problem}`);
-  console.log(reachText(reaches));
   const named = people.map((person) => (seen.has(person) ? `${person} (seen)` : person)).join(', ');
   printReports(`All: ${named}`, result.estimators);
   if (result.unseen) printReports(`Never trained on: ${unseen.join(', ')}`, result.unseen);
@@ -204,7 +187,7 @@ async function main(): Promise<void> {
   const corpus = await readCorpus(recordings, models, fp32);
   const measured = await measureClips(corpus);
   const result = resultOf(corpus, measured);
-  printResult(corpus, result, measured.reaches);
+  printResult(corpus, result);
   const { rateHz } = corpus.index;
   if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(measured.collection, rateHz))}\n`);
   const disturbed = robustness || checked ? await measureDisturbed(corpus, checked ?? usualTracking) : null;

@@ -83,7 +83,8 @@ const bones = [
   ['neck', 'head'],
 ] as const;
 
-const jointOf = (joints: Readonly<Record<string, Vec3>>, name: string): Vec3 => {
+/** Returns the place of a joint [m]. Throws if the estimator gave none. */
+export const jointOf = (joints: Readonly<Record<string, Vec3>>, name: string): Vec3 => {
   const joint = joints[name];
   if (!joint) throw new Error(`the estimator gave no ${name}`);
   return joint;

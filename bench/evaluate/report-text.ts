@@ -1,9 +1,9 @@
-import { tableRow } from '../table-row';
 import { type MeasuredMethod, measuredMethods } from './drive';
 import { type Report, reportNames, type Spread } from './measures';
 
 /** A row of a table of methods side by side. */
-export const methodRow = (label: string, cells: readonly string[]): string => tableRow(label, cells, 34, 22);
+export const methodRow = (label: string, cells: readonly string[]): string =>
+  `  ${label.padEnd(34)}${cells.map((cell) => cell.padStart(22)).join('')}`.trimEnd();
 
 const spreadCell = ({ mean, median, p95 }: Spread) => `${mean.toFixed(2)} / ${median.toFixed(2)} / ${p95.toFixed(2)}`;
 

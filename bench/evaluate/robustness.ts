@@ -1,17 +1,10 @@
-import type { Calibration } from 'threepoint/core';
-import { nextRandom, vec3 } from 'threepoint/math';
+import { nextRandom } from 'threepoint/math';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import {
   type DeviceTracking,
-  type LossLength,
   lasting,
-  loseHands,
   lossLengthFrom,
-  offsetTrackers,
-  raiseNoise,
   resampleEstimates,
-  resampleFrames,
-  scheduleLosses,
   seedOf,
   simulatedNoise,
   type Tracker,
@@ -22,27 +15,24 @@ import {
 import { createDriver, drive, type MeasuredMethod } from './drive';
 import { addLosses, emptyLossTally, type LongestStep, type LossReport, reportLosses } from './losses';
 import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
-import { peopleOf, type RecordedFrame } from './recordings';
+import { peopleOf } from './recordings';
 import { methodRow } from './report-text';
 import { measureTremble, standing } from './response';
-
-/** One clip with what its person calibrated. */
-export interface RobustnessClip {
-  readonly name: string;
-  readonly calibration: Calibration;
-  readonly frames: readonly RecordedFrame[];
-}
+import {
+  type Axis,
+  atRate,
+  axes,
+  lost,
+  mounted,
+  noisy,
+  type Piece,
+  type Stage,
+  scaled,
+  undisturbed,
+} from './situations';
 
 export const lossSeconds = [0.1, 0.5, 2] as const;
-/** Returns the losses of each of those lengths, then of the device's hand tracking. */
-const lossKindsOf = ({
-  losses,
-}: DeviceTracking): readonly { readonly key: string; readonly lengthOf: LossLength }[] => [
-  ...lossSeconds.map((seconds) => ({ key: String(seconds), lengthOf: lasting(seconds) })),
-  { key: 'hand tracking', lengthOf: lossLengthFrom(losses) },
-];
 export const offsetsCm = [-3, -1, 1, 3] as const;
-const axes = ['x', 'y', 'z'] as const;
 export const heightPercents = [-5, -2, 2, 5] as const;
 export const spanPercents = [-5, 5] as const;
 export const ratesHz = [72, 90, 120] as const;
@@ -65,7 +55,7 @@ export interface MethodRobustness {
   readonly noises: readonly NoiseReport[];
   readonly offsets: readonly {
     readonly tracker: Tracker;
-    readonly axis: (typeof axes)[number];
+    readonly axis: Axis;
     readonly offsetCm: number;
     readonly mpjpeCm: number;
   }[];
@@ -102,61 +92,28 @@ export function chooseClips<Clip extends { readonly name: string; readonly frame
   return chosen;
 }
 
-/** One disturbance of trackers, calibration or rate, and what became of the error under it. */
-interface Condition {
-  readonly rateHz: number;
-  readonly frames: (clip: RobustnessClip, rateHz: number) => readonly RecordedFrame[];
-  readonly calibration: (calibration: Calibration) => Calibration;
-}
-
-/** All conditions but losses, in the order of the report. */
-function conditions(rateHz: number, { noise }: DeviceTracking) {
-  const same: Condition = { rateHz, frames: (clip) => clip.frames, calibration: (calibration) => calibration };
-  const offsets = trackers.flatMap((tracker) =>
+/** Returns the stages of the report in its order; the losses are of each length, then of the device's hand tracking. */
+const stagesOf = ({ noise, losses }: DeviceTracking) => ({
+  noise: noisy(noise),
+  offsets: trackers.flatMap((tracker) =>
     axes.flatMap((axis) =>
-      offsetsCm.map((offsetCm) => ({
-        tracker,
-        axis,
-        offsetCm,
-        condition: {
-          ...same,
-          frames: (clip: RobustnessClip) =>
-            offsetTrackers(clip.frames, tracker, { ...vec3(0, 0, 0), [axis]: offsetCm / 100 }),
-        },
-      })),
+      offsetsCm.map((offsetCm) => ({ tracker, axis, offsetCm, stage: mounted(tracker, axis, offsetCm / 100) })),
     ),
-  );
-  const scaled = (key: 'eyeHeight' | 'armSpan', percents: readonly number[]) =>
-    percents.map((percent) => ({
-      percent,
-      condition: {
-        ...same,
-        calibration: (given: Calibration): Calibration => ({ ...given, [key]: given[key] * (1 + percent / 100) }),
-      },
-    }));
-  const rates = ratesHz.map((hz) => ({
-    hz,
-    condition: {
-      ...same,
-      rateHz: hz,
-      frames: (clip: RobustnessClip) => resampleFrames(clip.frames, rateHz, hz),
-    },
-  }));
-  return {
-    clean: same,
-    deviceNoise: { ...same, frames: (clip: RobustnessClip) => raiseNoise(clip.frames, noise, seedOf(clip.name)) },
-    offsets,
-    heights: scaled('eyeHeight', heightPercents),
-    spans: scaled('armSpan', spanPercents),
-    rates,
-  };
-}
+  ),
+  heights: heightPercents.map((percent) => ({ percent, stage: scaled('eyeHeight', percent) })),
+  spans: spanPercents.map((percent) => ({ percent, stage: scaled('armSpan', percent) })),
+  rates: ratesHz.map((hz) => ({ hz, stage: atRate(hz) })),
+  losses: [
+    ...lossSeconds.map((seconds) => lost(seconds, lasting(seconds))),
+    lost('hand tracking', lossLengthFrom(losses)),
+  ],
+});
 
 interface RobustnessOptions<Method, Listed> {
   readonly methods: readonly Method[];
   readonly clips: readonly Listed[];
-  /** Asked for each clip once. */
-  load(clip: Listed): RobustnessClip;
+  /** Reads a clip; called once for each. */
+  load(clip: Listed): Piece;
   readonly regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>;
   readonly rateHz: number;
   /** The device whose noise and losses are measured with; default: `usualTracking`. */
@@ -174,15 +131,14 @@ export async function measureRobustness<
   Listed extends { readonly person: string; readonly frames: number },
 >(options: RobustnessOptions<Method, Listed>): Promise<RobustnessReport<Method>> {
   const { methods, clips, regressors, rateHz, tracking = usualTracking } = options;
-  const all = conditions(rateHz, tracking);
-  const lossKinds = lossKindsOf(tracking);
-  const listed: readonly Condition[] = [
-    all.clean,
-    all.deviceNoise,
-    ...[...all.offsets, ...all.heights, ...all.spans, ...all.rates].map(({ condition }) => condition),
+  const all = stagesOf(tracking);
+  const stages = [
+    undisturbed,
+    all.noise,
+    ...[...all.offsets, ...all.heights, ...all.spans, ...all.rates].map(({ stage }) => stage),
   ];
-  const measures = methods.map(() => new Map(listed.map((condition) => [condition, emptyMeasures()])));
-  const tallies = methods.map(() => lossKinds.map(emptyLossTally));
+  const measures = methods.map(() => new Map(stages.map((stage) => [stage, emptyMeasures()])));
+  const tallies = methods.map(() => all.losses.map(emptyLossTally));
   const total = clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
   for (const listedClip of clips) {
@@ -190,50 +146,49 @@ export async function measureRobustness<
     for (const [number, name] of methods.entries()) {
       const regressor = regressors.get(name) ?? null;
       let seen: readonly MeasuredFrame[] = [];
-      for (const condition of listed) {
-        const frames = condition.frames(clip, rateHz);
-        const driven = await drive(name, condition.calibration(clip.calibration), regressor, frames);
-        if (condition === all.clean) seen = driven;
-        // Errors as the device would show them; jerk at the recording's rate, or rates would not compare.
-        addErrorsAndJerk(measures[number]!.get(condition)!, driven, condition.rateHz, rateHz);
+      for (const stage of stages) {
+        const staged = stage(clip, rateHz, 0);
+        const driven = await drive(name, staged.calibration, regressor, staged.frames);
+        if (stage === undisturbed) seen = driven;
+        addErrorsAndJerk(measures[number]!.get(stage)!, driven, staged.rateHz, rateHz);
       }
-      for (const [which, { key, lengthOf }] of lossKinds.entries()) {
-        const losses = scheduleLosses(clip.frames.length, rateHz, lengthOf, seedOf(`${clip.name} ${key}`));
+      for (const [which, stage] of all.losses.entries()) {
+        const { calibration, frames, losses } = stage(clip, rateHz, 0);
         if (losses.length === 0) continue;
-        const lossy = await drive(name, clip.calibration, regressor, loseHands(clip.frames, losses));
+        const lossy = await drive(name, calibration, regressor, frames);
         addLosses(tallies[number]![which]!, { lossy, seen }, losses, rateHz);
       }
     }
     done += listedClip.frames;
     options.onProgress?.(done / total);
   }
-  const lossesOf = (number: number) => lossKinds.map((_, which) => reportLosses(tallies[number]![which]!));
+  const lossesOf = (number: number) => all.losses.map((_, which) => reportLosses(tallies[number]![which]!));
   const trembles = await Promise.all(
     methods.map((name) => measureTrembles(name, regressors.get(name) ?? null, tracking.noise)),
   );
   const rows = methods.map((name, number): [Method, MethodRobustness] => {
-    const figures = (condition: Condition) => {
-      const { mpjpeCm, jerkRatio } = report(measures[number]!.get(condition)!);
+    const figures = (stage: Stage) => {
+      const { mpjpeCm, jerkRatio } = report(measures[number]!.get(stage)!);
       return { mpjpeCm: mpjpeCm.mean, jerkRatio };
     };
-    const withError = <Row extends { readonly condition: Condition }>({ condition, ...row }: Row) => ({
+    const withError = <Row extends { readonly stage: Stage }>({ stage, ...row }: Row) => ({
       ...row,
-      mpjpeCm: figures(condition).mpjpeCm,
+      mpjpeCm: figures(stage).mpjpeCm,
     });
     return [
       name,
       {
-        ...figures(all.clean),
+        ...figures(undisturbed),
         losses: lossesOf(number).slice(0, lossSeconds.length),
         handTracking: lossesOf(number).at(-1)!,
-        noises: [all.clean, all.deviceNoise].map((condition, which) => ({
-          ...figures(condition),
+        noises: [undisturbed, all.noise].map((stage, which) => ({
+          ...figures(stage),
           ...trembles[number]![which]!,
         })),
         offsets: all.offsets.map(withError),
         heights: all.heights.map(withError),
         spans: all.spans.map(withError),
-        rates: all.rates.map(({ hz, condition }) => ({ hz, ...figures(condition) })),
+        rates: all.rates.map(({ hz, stage }) => ({ hz, ...figures(stage) })),
       },
     ];
   });

@@ -7,25 +7,24 @@ import {
   right,
   type TrackedPose,
   type Transform,
-  transformPoint,
   transformPose,
   up,
-  type Vec3,
   vec3,
 } from 'threepoint/math';
 import {
   type Loss,
+  type LossLength,
   lasting,
   loseHands,
   offsetTrackers,
+  raiseNoise,
   resampleFrames,
   scheduleLosses,
   seedOf,
   type Tracker,
+  type TrackingNoise,
 } from './disturbances';
 import type { RecordedFrame } from './recordings';
-
-type Points = Readonly<Record<string, Vec3>>;
 
 /** A piece of a recording with what its person calibrated. */
 export interface Piece {
@@ -62,11 +61,12 @@ export const undisturbed: Stage = ({ calibration, frames }, rateHz) => ({ calibr
 /** Seconds of the losses; the page's tables and one between. */
 const lossSeconds = [0.1, 0.5, 1, 2] as const;
 
-const lost =
-  (seconds: number): Stage =>
+/** Hides hands at times that the piece's name and the name of the losses seed. */
+export const lost =
+  (losses: string | number, lengthOf: LossLength): Stage =>
   (piece, rateHz) => {
-    const losses = scheduleLosses(piece.frames.length, rateHz, lasting(seconds), seedOf(`${piece.name} ${seconds}`));
-    return { calibration: piece.calibration, rateHz, frames: loseHands(piece.frames, losses), losses };
+    const scheduled = scheduleLosses(piece.frames.length, rateHz, lengthOf, seedOf(`${piece.name} ${losses}`));
+    return { calibration: piece.calibration, rateHz, frames: loseHands(piece.frames, scheduled), losses: scheduled };
   };
 
 /** Loses hands, but reports them as guessed at their last tracked position. */
@@ -91,18 +91,36 @@ const guessed =
     return { calibration: piece.calibration, rateHz, frames, losses };
   };
 
-const directions = (['x', 'y', 'z'] as const).flatMap((axis) => [-1, 1].map((sign) => ({ axis, sign })));
+export const axes = ['x', 'y', 'z'] as const;
+export type Axis = (typeof axes)[number];
 
-/** Mounted so far [m] elsewhere, along another axis in every piece. */
-const mounted =
+const directions = axes.flatMap((axis) => [-1, 1].map((sign) => ({ axis, sign })));
+
+/** Mounts a tracker so far [m] elsewhere along an axis. */
+export const mounted =
+  (tracker: Tracker, axis: Axis, metres: number): Stage =>
+  (piece, rateHz, number) => ({
+    ...undisturbed(piece, rateHz, number),
+    frames: offsetTrackers(piece.frames, tracker, { ...vec3(0, 0, 0), [axis]: metres }),
+  });
+
+/** Mounts a tracker so far [m] elsewhere, in another direction for every piece. */
+const mountedInTurn =
   (tracker: Tracker, metres: number): Stage =>
   (piece, rateHz, number) => {
     const { axis, sign } = directions[number % directions.length]!;
-    const frames = offsetTrackers(piece.frames, tracker, { ...vec3(0, 0, 0), [axis]: sign * metres });
-    return { ...undisturbed(piece, rateHz, number), frames };
+    return mounted(tracker, axis, sign * metres)(piece, rateHz, number);
   };
 
-const scaled =
+/** Raises the noise of the simulated trackers to that of a device. */
+export const noisy =
+  (noise: TrackingNoise): Stage =>
+  (piece, rateHz, number) => ({
+    ...undisturbed(piece, rateHz, number),
+    frames: raiseNoise(piece.frames, noise, seedOf(piece.name)),
+  });
+
+export const scaled =
   (key: 'eyeHeight' | 'armSpan', percent: number): Stage =>
   (piece, rateHz, number) => ({
     ...undisturbed(piece, rateHz, number),
@@ -121,7 +139,7 @@ const tilted =
     }),
   });
 
-const atRate =
+export const atRate =
   (hz: number): Stage =>
   (piece, rateHz, number) => ({
     ...undisturbed(piece, hz, number),
@@ -194,10 +212,10 @@ const paused: Stage = (piece, rateHz, number) => {
 
 /** Everything that docs/accuracy.md measures and the page meets, by name. */
 export const situations: Readonly<Record<string, Stage>> = {
-  ...Object.fromEntries(lossSeconds.map((seconds) => [`hand lost ${seconds} s`, lost(seconds)])),
+  ...Object.fromEntries(lossSeconds.map((seconds) => [`hand lost ${seconds} s`, lost(seconds, lasting(seconds))])),
   'hand guessed 1 s': guessed(1),
-  'headset ±3 cm': mounted('headset', 0.03),
-  'grips ±3 cm': mounted('grips', 0.03),
+  'headset ±3 cm': mountedInTurn('headset', 0.03),
+  'grips ±3 cm': mountedInTurn('grips', 0.03),
   'headset tilted 12°': tilted(-0.21),
   'eye height −5 %': scaled('eyeHeight', -5),
   'eye height +5 %': scaled('eyeHeight', 5),
@@ -209,9 +227,3 @@ export const situations: Readonly<Record<string, Stage>> = {
   recentred,
   paused,
 };
-
-/** Points of a staged frame, on the floor of the truth. */
-export const onTruthsFloor = (points: Points, { truthFromFloor }: StagedFrame): Points =>
-  truthFromFloor
-    ? Object.fromEntries(Object.entries(points).map(([name, point]) => [name, transformPoint(truthFromFloor, point)]))
-    : points;

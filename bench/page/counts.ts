@@ -4,7 +4,7 @@ import { ArcheryPlay } from '../../src/page/archery/archery-play';
 import { createArcheryView } from '../../src/page/archery/archery-view';
 import { installEmulator } from '../../src/page/emulator/emulator';
 import { type Picture, Stage } from '../../src/page/shell/stage/stage';
-import type { DrawnCounts, World, WorldCounts } from '../counts';
+import type { World, WorldCounts } from '../counts';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
 import { reportOutcome } from './outcome';
@@ -16,12 +16,6 @@ const rateHz = 72;
 /** Frames of a world that are counted: every so many, over a few seconds of motion. */
 const countedFrames = 24;
 const stride = 9;
-
-const none: DrawnCounts = { drawCalls: 0, triangles: 0 };
-const larger = (a: DrawnCounts, b: DrawnCounts): DrawnCounts => ({
-  drawCalls: Math.max(a.drawCalls, b.drawCalls),
-  triangles: Math.max(a.triangles, b.triangles),
-});
 
 type CountedStage = Awaited<ReturnType<typeof openStage>>;
 
@@ -42,15 +36,9 @@ async function openStage() {
   const estimator = createEstimator('ik', defaultCalibration);
   const { avatar, file: body } = await openAvatar(stage.studio.scene, 'man');
 
-  const draw = (picture: Picture) => {
-    stage.look(picture);
-    stage.draw(picture);
-    return { scene: { ...stage.drawn.scene }, mirror: { ...stage.drawn.mirror } };
-  };
-
   /** Draws frames of a world and returns the most that any of them took. */
   async function count(mirror: boolean, frameAt: (index: number) => TrackingFrame): Promise<WorldCounts> {
-    const most = { scene: none, shadows: none, mirror: none };
+    const most = { drawCalls: 0, triangles: 0 };
     let index = 0;
     let failure: unknown = null;
     const countFrame = () => {
@@ -68,18 +56,11 @@ async function openStage() {
         mirror: mirror ? 'always' : 'never',
         savings: defaultSavings,
       };
-      const whole = draw(picture);
-      renderer.shadowMap.enabled = false;
-      renderer.shadowMap.autoUpdate = false;
-      const unshaded = draw(picture);
-      renderer.shadowMap.autoUpdate = true;
-      renderer.shadowMap.enabled = true;
-      most.scene = larger(most.scene, whole.scene);
-      most.mirror = larger(most.mirror, whole.mirror);
-      most.shadows = larger(most.shadows, {
-        drawCalls: whole.scene.drawCalls - unshaded.scene.drawCalls,
-        triangles: whole.scene.triangles - unshaded.scene.triangles,
-      });
+      stage.look(picture);
+      stage.draw(picture);
+      const { scene, mirror: reflections } = stage.drawn;
+      for (const what of ['drawCalls', 'triangles'] as const)
+        most[what] = Math.max(most[what], scene[what] + reflections[what]);
     };
     renderer.setAnimationLoop(() => {
       try {

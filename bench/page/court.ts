@@ -52,7 +52,7 @@ export class Court {
   readonly #seen: readonly Mutable<RemotePerson>[];
   readonly #people: RemotePerson[] = [];
   readonly #shown: Mutable<Parameters<BallView['show']>[0]>;
-  #players = new RemotePlayers();
+  readonly #players = new RemotePlayers();
 
   constructor(studio: Studio, mannequin: ArrayBuffer, places: number, quality: Quality = 'low') {
     this.#studio = studio;
@@ -95,11 +95,6 @@ export class Court {
       paused: false,
       head: nowhere,
     };
-  }
-
-  /** The others leave. */
-  clear(): void {
-    this.#players = new RemotePlayers();
   }
 
   /** Packets of the others, as if sent at this time [s]. */

@@ -1,10 +1,10 @@
-import { actorFrame, defaultCalibration } from 'threepoint/core';
+import { actorFrame, createEstimator, defaultCalibration } from 'threepoint/core';
 import { median } from 'threepoint/math';
 import { mean } from '../../src/threepoint/core/math/statistics';
 import { Court } from './court';
 import { nextFrame } from './frame-times';
 import { createSenders } from './senders';
-import { type BenchStage, withoutDevice } from './stage';
+import { openPicture, withoutDevice } from './stage';
 
 /** What fifteen others cost the page's thread beyond the own body, frames of 72 Hz, medians [ms]. */
 export interface CrowdTimes {
@@ -31,22 +31,15 @@ const rounds = 30;
  * Frames with everyone and with the own body alone, block by block in turns, so that what else the machine does meets
  * both.
  */
-export async function measureSixteen({
-  renderer,
-  studio,
-  mirror,
-  avatar,
-  camera,
-  estimators,
-  mannequin,
-}: BenchStage): Promise<CrowdTimes> {
+export async function measureSixteen(): Promise<CrowdTimes> {
+  const { renderer, studio, mirror, avatar, camera, mannequin } = await openPicture();
   const court = new Court(studio, mannequin, others + 1);
   mirror.setVisible(false);
   camera.position.set(1.2, 2.1, 3.4);
   camera.lookAt(0, 0.9, -2.5);
   withoutDevice(renderer.getContext());
   const { packetsAt } = createSenders(others);
-  const estimator = estimators.ik;
+  const estimator = createEstimator('ik', defaultCalibration);
   let frames = 0;
   let sent = -1;
 

@@ -61,7 +61,8 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
     onThread.push(spent + later);
   }
   close();
-  const summary = (values: readonly number[]) => ({ p50: quantile(values, 0.5), p95: quantile(values, 0.95) });
+  const at = (values: readonly number[], share: number) => Number(quantile(values, share).toFixed(4));
+  const summary = (values: readonly number[]) => ({ p50: at(values, 0.5), p95: at(values, 0.95) });
   const device = regressor.provider === 'webgpu' ? ` (${await graphicsDevice()})` : '';
   return {
     provider: `${regressor.provider}${device}`,

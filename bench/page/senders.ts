@@ -12,7 +12,6 @@ export function createSenders(count: number) {
     shift: 2.7 * index,
   }));
   return {
-    count,
     packetsAt: (time: number) =>
       senders.map(({ seat, estimator, shift }) => {
         const frame = actorFrame(time + shift, defaultCalibration);

@@ -1,12 +1,12 @@
 import { PerspectiveCamera, type Scene } from 'three';
-import { createEstimator, defaultCalibration, type EstimatorName, estimatorNames, recordOf } from 'threepoint/core';
+import { defaultCalibration } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
 import { createInferenceWorker } from 'threepoint/onnx';
 import { Mirror } from 'threepoint/three';
 import { createRenderer } from '../../src/page/scene/renderer';
 import { createStudio } from '../../src/page/studio/studio';
 import { createAvatar } from '../../src/threepoint/avatar/avatar';
-import { type NetworkName, needsRegressor } from '../../src/threepoint/core/estimation/estimators';
+import type { NetworkName } from '../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import { loadRegressor } from '../../src/threepoint/onnx/load-regressor';
 
@@ -43,16 +43,6 @@ export async function openPicture() {
 export const loadNetwork = (name: NetworkName): Promise<PoseRegressor> =>
   loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker });
 
-/** For games, which ask their network themselves. */
-export async function openStage() {
-  const regressors: Partial<Record<EstimatorName, PoseRegressor>> = {};
-  for (const name of estimatorNames.filter(needsRegressor)) regressors[name] = await loadNetwork(name);
-  const estimators = recordOf(estimatorNames, (name) =>
-    createEstimator(name, defaultCalibration, regressors[name] ?? null),
-  );
-  return { ...(await openPicture()), estimators };
-}
-
 /**
  * Draw calls reach no device from now on: in software drawing would be most of a frame, and the page's thread would
  * wait for it.
@@ -61,5 +51,3 @@ export function withoutDevice(gl: WebGLRenderingContext | WebGL2RenderingContext
   for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
     Object.assign(gl, { [name]: () => undefined });
 }
-
-export type BenchStage = Awaited<ReturnType<typeof openStage>>;

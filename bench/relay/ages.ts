@@ -53,10 +53,8 @@ export interface Seen {
   readonly offP95Mm: number;
 }
 
-/**
- * Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on.
- */
-export const tremors = [1e-4, 3e-5, 0] as const;
+/** The standard deviation of a headset's positions, along each axis [m]: an assumption, which jerk depends on. */
+const tremor = 3e-5;
 const displayHz = 72;
 const posesPerSecond = 30;
 /** The first seconds are not counted: clocks and delays are found out in them. */
@@ -114,7 +112,7 @@ function arrivals(leaving: readonly number[], { roundTrip, jitter, loss }: Way, 
 }
 
 /** Adds tracker noise to the positions of a frame. */
-function trembling(frame: TrackingFrame, tremor: number, noise: () => number): TrackingFrame {
+function trembling(frame: TrackingFrame, noise: () => number): TrackingFrame {
   const moved = (pose: TrackedPose): TrackedPose => {
     const { x, y, z } = pose.position;
     return { ...pose, position: vec3(x + tremor * noise(), y + tremor * noise(), z + tremor * noise()) };
@@ -134,22 +132,21 @@ interface SentFrame {
   readonly places: readonly Vec3[];
 }
 
-/** By seconds and tremor, for it is the same over every way. */
-const performances = new Map<string, readonly SentFrame[]>();
+/** The performances by their seconds: they are the same over every way. */
+const performances = new Map<number, readonly SentFrame[]>();
 
 /** What the other's mirror shows, picture by picture. */
-function performed(seconds: number, tremor: number): readonly SentFrame[] {
-  const key = `${seconds} ${tremor}`;
-  const before = performances.get(key);
+function performed(seconds: number): readonly SentFrame[] {
+  const before = performances.get(seconds);
   if (before) return before;
   const ik = createIk(defaultCalibration);
   const noise = createNormalRandom(1);
   const frames = Array.from({ length: Math.floor(seconds * displayHz) }, (_, i) => {
     const time = i / displayHz;
-    const { pose } = ik.update(trembling(actorFrame(time, defaultCalibration), tremor, noise));
+    const { pose } = ik.update(trembling(actorFrame(time, defaultCalibration), noise));
     return { time, pose: structuredClone(pose), places: placesOf(pose).map(({ x, y, z }) => vec3(x, y, z)) };
   });
-  performances.set(key, frames);
+  performances.set(seconds, frames);
   return frames;
 }
 
@@ -172,12 +169,9 @@ function packetOf({ time, pose }: SentFrame): PosePacket {
   return packet;
 }
 
-/**
- * Simulates one person seen by another through the page's codec and playback; `seed`: of the network; `tremor`: of
- * `tremors`.
- */
-export function seenOver(way: Way, seconds: number, seed: number, tremor: number = tremors[0]): Seen {
-  const frames = performed(seconds, tremor);
+/** Simulates one person seen by another through the page's codec and playback; `seed`: of the network. */
+export function seenOver(way: Way, seconds: number, seed: number): Seen {
+  const frames = performed(seconds);
   const sent = sentOf(frames);
   const arrived = arrivals(
     sent.map(({ time }) => time),

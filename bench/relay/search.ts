@@ -35,8 +35,6 @@ const few = 24;
 export interface SearchOptions {
   /** The duration of each load. */
   readonly seconds: number;
-  /** A fixed number of rooms without a search; null: the maximum is searched. */
-  readonly rooms: number | null;
   /** The search ends where the next count would be nearer than this share of it. */
   readonly nearness: number;
 }
@@ -154,12 +152,12 @@ async function climb(drive: Drive, cell: Cell, light: Trial, nearness: number): 
   }
 }
 
-export async function search(cell: Cell, { seconds, rooms, nearness }: SearchOptions): Promise<Found> {
+export async function search(cell: Cell, { seconds, nearness }: SearchOptions): Promise<Found> {
   const drive = new Drive(cell, seconds);
   try {
     await drive.begin();
-    const light = await attempt(drive, cell, rooms ?? Math.max(1, Math.round(few / cell.room)));
-    return { light, most: rooms === null && holds(light) ? await climb(drive, cell, light, nearness) : light };
+    const light = await attempt(drive, cell, Math.max(1, Math.round(few / cell.room)));
+    return { light, most: holds(light) ? await climb(drive, cell, light, nearness) : light };
   } finally {
     drive.end();
   }

@@ -7,7 +7,7 @@ import {
   renameSync,
   rmSync,
   statSync,
-  writeSync,
+  writeFileSync,
 } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { type EstimatorName, estimatorNames, parseRecording, type Replayable, reasonOf } from 'threepoint/core';
@@ -57,10 +57,9 @@ function readGiven(path: string, what: string): Buffer {
 }
 
 async function formatOf({ to, avatar }: MotionRequest): Promise<MotionFormat | MotionWriter> {
-  if (to !== 'glb') {
+  const format = checked('--to', to, [...motionFormats, 'glb']);
+  if (format !== 'glb') {
     if (avatar) throw new Error('--avatar is for --to glb alone');
-    const format = motionFormats.find((name) => name === to);
-    if (!format) throw new Error(`--to: “${to}” is none of ${motionFormats.join(', ')}, glb`);
     return format;
   }
   const path = avatar ?? join(root, 'public/avatars/mannequin.vrm');
@@ -122,10 +121,7 @@ export function writeWhole(path: string, parts: Iterable<string | Uint8Array>): 
   const file = openSync(temporary, 'wx');
   try {
     try {
-      for (const part of parts) {
-        const bytes = typeof part === 'string' ? Buffer.from(part) : part;
-        for (let at = 0; at < bytes.length; ) at += writeSync(file, bytes, at);
-      }
+      for (const part of parts) writeFileSync(file, part);
       fsyncSync(file);
     } finally {
       closeSync(file);

@@ -3,8 +3,8 @@
 // request.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
-import { reasonOf } from 'threepoint/core';
 import type { MocapSource } from 'threepoint/motion';
+import { reasonOf } from '../../src/threepoint/core/errors/reasons';
 import { readSkeletonMap } from '../../src/threepoint/core/mocap/read-skeleton-map';
 import { type FileBytes, FileReaderProcess } from './reader-process';
 

@@ -1,13 +1,16 @@
-import { reasonOf } from 'threepoint/core';
-import { isGltfMotion, readGltfMotion } from 'threepoint/files';
-import { type MocapSource, prepareMocap } from 'threepoint/motion';
-import { checkAvatar } from '../../src/threepoint/avatar/file/check-avatar';
-import { readTruthMotion } from '../../src/threepoint/core/mocap/prepare-mocap';
+// Imports are of single modules, and those with three.js wait for a file that needs them: this process starts for each
+// reading, in tests of the training some forty times.
+import type { MocapSource } from 'threepoint/motion';
+import { reasonOf } from '../../src/threepoint/core/errors/reasons';
+import { prepareMocap, readTruthMotion } from '../../src/threepoint/core/mocap/prepare-mocap';
 import { finishWork } from '../../src/threepoint/core/motion/work';
 import type { FileBytes, ReaderApi, ReaderResponse } from './reader-process';
 
 async function sourceOf({ name, bytes, skeleton, ...more }: FileBytes): Promise<MocapSource> {
-  if (isGltfMotion(name)) return { name, ...more, ...(await readGltfMotion(bytes, name)) };
+  if (!/\.(amc|bvh)$/i.test(name)) {
+    const { readGltfMotion } = await import('threepoint/files');
+    return { name, ...more, ...(await readGltfMotion(bytes, name)) };
+  }
   const text = new TextDecoder().decode(bytes);
   return skeleton ? { format: 'amc', name, text, skeleton, ...more } : { format: 'bvh', name, text, ...more };
 }
@@ -15,7 +18,10 @@ async function sourceOf({ name, bytes, skeleton, ...more }: FileBytes): Promise<
 const reader: ReaderApi = {
   clips: async (file) => finishWork(prepareMocap(await sourceOf(file))).clips,
   truth: async (file) => finishWork(readTruthMotion(await sourceOf(file))),
-  avatar: async ({ name, bytes }) => (await checkAvatar(bytes, { name, supportedCompressions: [] })).file.arrayBuffer(),
+  async avatar({ name, bytes }) {
+    const { checkAvatar } = await import('../../src/threepoint/avatar/file/check-avatar');
+    return (await checkAvatar(bytes, { name, supportedCompressions: [] })).file.arrayBuffer();
+  },
 };
 
 const respond = (response: ReaderResponse): void => void process.send!(response);

@@ -7,7 +7,10 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 const figuresFile = `${root}artifacts/reliability.jsonl`;
 const storedFile = `${root}docs/reliability.json`;
 const page = `${root}docs/reliability.md`;
-const [unitOnly, long, redraw] = ['--unit', '--long', '--redraw'].map((option) => process.argv.includes(option));
+/** The options of the npm script. */
+const { unit, long, redraw } = JSON.parse(process.argv[2] ?? '{}') as Partial<
+  Record<'unit' | 'long' | 'redraw', boolean>
+>;
 
 /** Returns the test files of a folder that report figures. */
 const measuring = (folder: string): string[] =>
@@ -28,7 +31,7 @@ if (!redraw) {
   mkdirSync(`${root}artifacts`, { recursive: true });
   rmSync(figuresFile, { force: true });
   passed = runTests('vitest/vitest.mjs', ['run', ...measuring('tests')]);
-  if (!unitOnly) {
+  if (!unit) {
     const skip = long ? [] : ['--grep-invert', '@long'];
     passed = runTests('@playwright/test/cli.js', ['test', ...measuring('e2e'), ...skip]) && passed;
   }

@@ -45,7 +45,7 @@ describe('the cost of a loss', () => {
     expect(after.elbowCm - after.elbowSeenCm).toBeLessThan(during.elbowCm - during.elbowSeenCm);
   });
 
-  test('is a named and measured jump where a joint is moved in one frame', async () => {
+  test('is a measured jump where a joint is moved in one frame', async () => {
     const [, seen] = await measured();
     const jumping = seen.map((frame, row) =>
       row < 100 ? frame : { ...frame, joints: { ...frame.joints, neck: { ...frame.joints.neck!, y: 5 } } },
@@ -53,7 +53,7 @@ describe('the cost of a loss', () => {
     const tally = emptyLossTally();
     addLosses(tally, { lossy: jumping, seen }, losses, 60);
     const { atLoss, atReturn } = reportLosses(tally);
-    expect(atLoss).toMatchObject({ joint: 'neck', excessJoint: 'neck', over5Cm: 1 });
+    expect(atLoss.over5Cm).toBe(1);
     expect(atLoss.stepCm).toBeCloseTo((5 - seen[99]!.joints.neck!.y) * 100, -1);
     expect(atReturn.over5Cm).toBe(0);
   });
@@ -94,7 +94,7 @@ describe('a whole run', () => {
       rateHz: 60,
     });
     await learned.dispose();
-  }, 60_000);
+  });
 
   test('has every row for every method, all of them finite', () => {
     for (const method of Object.values(result.estimators)) {
@@ -119,5 +119,5 @@ describe('a whole run', () => {
   test('is the same twice', async () => {
     const again = await measureRobustness({ methods: ['ik'], clips, load, regressors: new Map(), rateHz: 60 });
     expect(again.estimators.ik).toEqual(result.estimators.ik);
-  }, 60_000);
+  });
 });

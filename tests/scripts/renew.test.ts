@@ -42,7 +42,7 @@ describe('a run', () => {
     );
     expect(stdout).toContain('renew 1 of 1, goldens: ');
     expect(stderr).toContain(`goldens: ${join(folder, 'none')}: no such folder`);
-    expect(stderr).toMatch(/renew: the step goldens ended with exit code 1 after 0:00:\d\d; its messages are above/);
+    expect(stderr).toMatch(/renew: the step goldens ended with exit code 1; its messages are above/);
     expect(stderr).toContain('npm run tool -- renew --mocap none --from goldens\n');
     expect(status).toBe(1);
   });

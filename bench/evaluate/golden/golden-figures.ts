@@ -1,10 +1,9 @@
 import { distance, type Vec3 } from 'threepoint/math';
-import type { Loss } from '../disturbances';
 import { addLosses, emptyLossTally, type LossTally, reportLosses } from '../losses';
-import { addClip, emptyMeasures, type MeasuredFrame, type Measures, report, reportNames, rounded } from '../measures';
+import { emptyMeasures, type MeasuredFrame, type Measures, report, reportNames, rounded } from '../measures';
 import { truthJoints } from '../recordings';
 import { addErrorsAndJerk } from '../robustness';
-import type { StagedFrame } from '../situations';
+import type { Staged } from '../situations';
 
 /** Figures of one estimator in one situation by name; the name says the unit, and `kindOf` how it may differ. */
 export type GoldenFigures = Readonly<Record<string, number>>;
@@ -31,30 +30,26 @@ export const emptyGoldenTally = (): GoldenTally => ({
   places: { stepCm: '', excessCm: '' },
 });
 
-/**
- * One driven piece: what was staged, what came of it, and the same frames with nothing done to them where hands were
- * lost.
- */
+/** One driven piece: what was staged, and what came of it. */
 export interface DrivenPiece {
   readonly name: string;
-  /** The rate of the frames, and that of the recording. */
-  readonly rateHz: number;
+  /** The rate of the recording. */
   readonly recordedHz: number;
-  readonly staged: readonly StagedFrame[];
+  readonly staged: Staged;
   readonly driven: readonly MeasuredFrame[];
-  readonly losses: readonly Loss[];
+  /** Undisturbed frames of the piece, where hands were lost. */
   readonly seen: readonly MeasuredFrame[] | null;
 }
 
 /** Adds a piece; frames on both sides of a gap are no motion. */
 export function addPiece(tally: GoldenTally, piece: DrivenPiece): void {
-  const { staged, driven, rateHz, recordedHz, losses, seen } = piece;
-  const starts = staged.flatMap(({ resumes }, row) => (row === 0 || resumes ? [row] : []));
+  const { driven, recordedHz, seen } = piece;
+  const { frames, rateHz, losses } = piece.staged;
+  const starts = frames.flatMap(({ resumes }, row) => (row === 0 || resumes ? [row] : []));
   starts.forEach((start, index) => {
     const end = starts[index + 1] ?? driven.length;
     const run = driven.slice(start, end);
-    if (rateHz === recordedHz) addClip(tally.measures, run, rateHz);
-    else addErrorsAndJerk(tally.measures, run, rateHz, recordedHz);
+    addErrorsAndJerk(tally.measures, run, rateHz, recordedHz);
     for (let row = start + 1; row < end; row++) addSteps(tally, piece, row);
   });
   if (seen) addLosses(tally.losses, { lossy: driven, seen }, losses, rateHz);
@@ -62,14 +57,14 @@ export function addPiece(tally: GoldenTally, piece: DrivenPiece): void {
 }
 
 /** How far each joint goes into this frame [cm in 1/60 s], and how much further than the truth does. */
-function addSteps(tally: GoldenTally, { name, rateHz, staged, driven }: DrivenPiece, row: number): void {
+function addSteps(tally: GoldenTally, { name, staged, driven }: DrivenPiece, row: number): void {
   const [before, now] = [driven[row - 1] as MeasuredFrame, driven[row] as MeasuredFrame];
   const step = (from: Vec3 | undefined, to: Vec3 | undefined): number =>
-    from && to ? (distance(from, to) * 100 * rateHz) / 60 : 0;
+    from && to ? (distance(from, to) * 100 * staged.rateHz) / 60 : 0;
   const note = (what: 'stepCm' | 'excessCm', value: number, joint: string): void => {
     if (value <= tally.largest[what]) return;
     tally.largest[what] = value;
-    tally.places[what] = `${name}, ${((staged[row] as StagedFrame).frame.time).toFixed(2)} s, ${joint}`;
+    tally.places[what] = `${name}, ${staged.frames[row]!.frame.time.toFixed(2)} s, ${joint}`;
   };
   let most = 0;
   for (const joint of Object.keys(now.joints)) {

@@ -3,21 +3,10 @@ import { join } from 'node:path';
 import { reasonOf, recordOf } from 'threepoint/core';
 import { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
 import { Gait, type GaitNetwork, shippedGait } from '../../../src/threepoint/core/estimation/gait/gait';
-import { tableRow } from '../../table-row';
 import { loadRegressors } from '../networks';
 import { peopleOf, readIndex } from '../recordings';
 import { bodyOf, driveLegs, type LegDriver, legDrivers, mannequinLegs } from './leg-drivers';
 import { addLegs, emptyLegMeasures, type LegReport, legReport, meanReport } from './leg-measures';
-
-function print(title: string, reports: readonly (readonly [string, LegReport])[]): void {
-  console.log(`\n${title}`);
-  const keys = Object.keys(reports[0]?.[1] ?? {}) as (keyof LegReport)[];
-  console.log(tableRow('', keys));
-  for (const [name, report] of reports) {
-    const cells = keys.map((key) => report[key].toFixed(2));
-    console.log(tableRow(name, cells));
-  }
-}
 
 /**
  * The network of each person: the page's where it has not seen them; else one of the folder that has not, where there
@@ -78,10 +67,9 @@ async function main(): Promise<void> {
   for (const problem of index.problems) console.log(`  ${problem}`);
   for (const driver of legDrivers) {
     const all = meanReport(reports.map(([, report]) => report[driver]));
-    print(`Legs under the hips of: ${driver}`, [
-      ...reports.map(([name, report]) => [name, report[driver]] as const),
-      ['all alike', all],
-    ]);
+    console.log(`\nLegs under the hips of: ${driver}`);
+    const rows = reports.map(([name, report]) => [name, report[driver]] as const);
+    console.table(Object.fromEntries([...rows, ['all alike', all]]));
   }
   if (json) writeFileSync(json, `${JSON.stringify({ people, problems: index.problems }, null, 2)}\n`);
 }

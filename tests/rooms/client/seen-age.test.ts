@@ -4,11 +4,8 @@ import { printFigures } from '../../print-figures';
 
 const seconds = 60;
 
-/** The jitter of a headset's positions, along each axis [m]. */
-const steady = 3e-5;
-
 function seen(way: Way, seed: number) {
-  const figures = seenOver(way, seconds, seed, steady);
+  const figures = seenOver(way, seconds, seed);
   const { p50Ms, p95Ms, freezes, jerkRatio } = figures;
   const milliseconds = `${1000 * way.roundTrip} ± ${1000 * way.jitter} ms, ${100 * way.loss} % lost`;
   printFigures(`seen over ${milliseconds}`, { p50Ms, p95Ms, 'freezes a minute': freezes, jerkRatio });
