@@ -104,7 +104,7 @@ export class SessionFlow {
     const absences = current.takeAbsences();
     for (const absence of absences) this.session.apply({ type: 'absence', absence });
     const { matchClock } = current;
-    const { running, waiting = false } = this.session.progress;
+    const { running, waiting } = this.session.progress;
     const changed = matchClock !== null && running && matchClock.runs === waiting;
     if (changed) this.session.apply({ type: 'match-clock', ...matchClock });
     if (changed || absences.length > 0) void this.exchange();

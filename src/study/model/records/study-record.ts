@@ -67,9 +67,8 @@ const eventSchema = v.variant('type', [
     place: v.nullable(placeSchema),
     step: text(120),
   }),
-  /** `by` is absent in older records. */
-  v.object({ type: v.literal('pause'), by: v.exactOptional(author) }),
-  v.object({ type: v.literal('resume'), by: v.exactOptional(author) }),
+  v.object({ type: v.literal('pause'), by: author }),
+  v.object({ type: v.literal('resume'), by: author }),
   /** The consent to motion was withdrawn with the code, and the recordings were deleted. */
   v.object({ type: v.literal('motion-withdrawn') }),
   v.object({ type: v.literal('remark'), text: text(2000) }),
@@ -153,7 +152,7 @@ export type StudyEvent = v.InferOutput<typeof eventSchema>;
 /** A record about a participant, complete in itself. */
 export type StudyRecord = v.InferOutput<typeof recordSchema>;
 
-/** The fields that the server adds to a record. They are absent in records of earlier versions and of no server. */
+/** The fields that the server adds to a record. They are absent in records that no server has stored. */
 const arrivalSchema = v.object({
   /** The token with which the record came. */
   author: v.exactOptional(author),

@@ -83,8 +83,8 @@ export const outcomeSchema = v.object({
         /** The time on the game's clock, which also pauses while the head is lost. */
         time: duration,
         /**
-         * The second of the trial at the frame that showed it; `clock` converts it to the recording. Absent in older
-         * records.
+         * The second of the trial at the frame that showed it; `clock` converts it to the recording. Absent: the trial
+         * is simulated.
          */
         onset: v.exactOptional(duration),
         type: v.picklist(['hit', 'miss', 'catch']),
@@ -121,7 +121,7 @@ export const outcomeSchema = v.object({
   assists: v.pipe(v.array(text(60)), v.maxLength(16, 'expected at most sixteen assists')),
   /** The number of recorded tracking frames; 0 without consent. */
   motionFrames: count,
-  /** Absent in older records, or unknown. */
+  /** Absent: unknown. */
   clock: v.exactOptional(trialClockSchema),
   /** The absences of the group during the match, the same for all its participants; absent: none. */
   absences: v.exactOptional(

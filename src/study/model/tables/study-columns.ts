@@ -23,7 +23,7 @@ const who = [
     'author',
     'participant, experimenter',
     'records: author',
-    'Whose token the record came with; empty: stored by an earlier version.',
+    'Whose token the record came with; empty: no server has stored it.',
   ),
   text(
     'flag',

@@ -137,7 +137,7 @@ function eventText(body: StudyEvent): string {
       return absenceText(body);
     case 'pause':
     case 'resume':
-      return body.by === undefined ? '' : `by the ${body.by}`;
+      return `by the ${body.by}`;
     case 'unwell':
       return `${body.questionnaire} ${body.measure}: ${body.value}`;
     default:

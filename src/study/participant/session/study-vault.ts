@@ -40,14 +40,6 @@ export class StorageEvicted extends Error {
   }
 }
 
-/** The format of earlier versions, in which the number of the newest command was stored next to the progress. */
-type EarlierSession = KeptSession & { readonly commandsSeen?: number };
-
-function broughtUpToDate({ commandsSeen, ...session }: EarlierSession): KeptSession {
-  if (commandsSeen === undefined) return session;
-  return { ...session, progress: { commandsSeen, ...session.progress } };
-}
-
 const everyOf = ({ study, participant }: StudyPlace) =>
   IDBKeyRange.bound([study, participant, ''], [study, participant, '\uffff']);
 
@@ -68,10 +60,7 @@ export class StudyVault {
   }
 
   session({ study, participant }: StudyPlace): Promise<KeptSession | null> {
-    return this.#request(async () => {
-      const kept = await this.#database.get('sessions', [study, participant]);
-      return kept ? broughtUpToDate(kept) : null;
-    });
+    return this.#request(async () => (await this.#database.get('sessions', [study, participant])) ?? null);
   }
 
   /**
