@@ -2,8 +2,6 @@ import { readFileSync } from 'node:fs';
 import { strFromU8, unzipSync } from 'fflate';
 import { cohortsByParticipant } from '../../src/study/model/plan/allocation';
 import { checkedPlan } from '../../src/study/model/plan/plan';
-import { answerModelWith } from '../../src/study/simulation/answer-model';
-import { statedPerformanceModel } from '../../src/study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulate-study';
 import { expect, keepPicture } from '../page-fixture';
 import { openResults, test } from './study-participant';
@@ -17,8 +15,7 @@ async function simulateOn(origin: string, file: unknown, effects: Readonly<Recor
   const plan = simulatedPlan(checkedPlan(file));
   const experimenting = experimenter(origin);
   await experimenting.begin(plan, true);
-  const models = { answers: answerModelWith(effects), performance: statedPerformanceModel };
-  const participants = simulateStudy(plan, models, 3, 1_767_600_000);
+  const participants = simulateStudy(plan, { answers: effects, scores: {} }, 3, 1_767_600_000);
   for (const { participant, records } of participants) {
     const path = `/${plan.id}/participants/${participant}`;
     await experimenting.ask(`${path}/claim`, 'POST', {});
