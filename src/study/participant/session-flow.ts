@@ -135,7 +135,6 @@ export class SessionFlow {
     this.show();
   }
 
-  /** Shows the present state of the session. */
   show(): void {
     const { session } = this;
     const { display } = this.#page;

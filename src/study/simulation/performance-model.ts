@@ -30,7 +30,6 @@ export interface Player {
   readonly armSpan: number;
 }
 
-/** Draws a simulated participant's skill and measures. */
 export function drawPlayer(random: RandomSource): Player {
   const eyeHeight = Math.min(1.9, Math.max(1.35, 1.58 + 0.09 * random.normal()));
   return { skill: skillDeviation * random.normal(), eyeHeight, armSpan: 0.945 * eyeHeight };

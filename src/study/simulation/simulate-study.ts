@@ -120,7 +120,6 @@ export function* simulatedParticipants(
   }
 }
 
-/** Returns all simulated participants of a study. */
 export const simulateStudy = (...study: Parameters<typeof simulatedParticipants>): readonly SimulatedParticipant[] => [
   ...simulatedParticipants(...study),
 ];

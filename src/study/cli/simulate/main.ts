@@ -12,7 +12,6 @@ const root = fileURLToPath(new URL('../../../..', import.meta.url));
 /** The start of the first simulated participant, a fixed day so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 
-/** The options of the npm script study:simulate. */
 interface Options {
   /** The full path of the folder for the files. */
   readonly out: string;

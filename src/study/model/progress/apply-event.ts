@@ -22,9 +22,7 @@ export type ProgressEvent =
   | { readonly type: 'trial-finished'; readonly outcome: TrialOutcome }
   /** null removes the answer. */
   | { readonly type: 'answer'; readonly question: string; readonly value: Answer | null }
-  /** Hands the questionnaire in. */
   | { readonly type: 'submit' }
-  /** Lets time pass. */
   | { readonly type: 'tick' }
   /** `by`: absent: the participant. */
   | { readonly type: 'pause'; readonly by?: 'experimenter' }
@@ -50,7 +48,6 @@ export type ProgressEvent =
    */
   | { readonly type: 'reload' };
 
-/** The result of an event. */
 export interface EventResult {
   readonly progress: Progress;
   /** The records to store and send, in this order. */
@@ -148,7 +145,6 @@ class SessionAtEvent {
     return this.accept(counted, [{ ...this.recordFields, kind: 'event', id: `event-${counted.events}`, body }]);
   }
 
-  /** Returns the session at the next step. */
   moveOn(from: Progress, records: readonly StudyRecord[] = []): EventResult {
     const { steps } = this.schedule;
     const next = steps.slice(steps.indexOf(this.step) + 1).find((step) => !isFinishedPractice(step, from));

@@ -24,7 +24,6 @@ const progressSchema = v.object({
   study: identifier,
   participant: participantId,
   simulated: v.boolean(),
-  /** The id of the present step. */
   step: text(120),
   /** Whether the clock of the step was started. */
   running: v.boolean(),
@@ -64,7 +63,6 @@ const progressSchema = v.object({
 /** The progress of a participant in the schedule, as plain JSON that survives reloads and crashes. */
 export type Progress = v.InferOutput<typeof progressSchema>;
 
-/** Returns the progress at the beginning of a session. */
 export function begin(schedule: Schedule, simulated = false): Progress {
   return {
     version: progressVersion,

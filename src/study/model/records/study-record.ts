@@ -22,7 +22,6 @@ export const longestRecord = 65_536;
 
 const blockNumber = integerBetween(1, 1000);
 
-/** The place of a record in the study. */
 const placeSchema = v.object({
   task: identifier,
   /** The position of the condition in the participant's order, from 1. */
@@ -161,7 +160,6 @@ const arrivalSchema = v.object({
 });
 
 export type RecordAuthor = NonNullable<v.InferOutput<typeof arrivalSchema>['author']>;
-/** A record as the server returns it. */
 export type StoredRecord = StudyRecord & v.InferOutput<typeof arrivalSchema>;
 export type DemographicsRecord = Extract<StudyRecord, { kind: 'demographics' }>;
 export type TrialRecord = Extract<StudyRecord, { kind: 'trial' }>;

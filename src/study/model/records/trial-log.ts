@@ -58,7 +58,6 @@ export const absenceSchema = v.object({
   time: duration,
   /** For how long it stood. */
   seconds: duration,
-  /** Whether the match was given up after that. */
   givenUp: v.boolean('expected true or false'),
 });
 export type TrialAbsence = v.InferOutput<typeof absenceSchema>;
@@ -71,7 +70,6 @@ export const outcomeSchema = v.object({
   ended: v.picklist(trialEnds, `expected ${trialEnds.slice(0, -1).join(', ')} or stopped`),
   /** Points; for a group, those of the group. */
   score: numberBetween(0, 100_000),
-  /** The highest possible score. */
   maximum: numberBetween(1, 100_000),
   /** Shots, throws or other attempts of this participant, and how many of them scored. */
   shots: count,

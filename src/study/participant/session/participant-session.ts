@@ -78,7 +78,6 @@ export class ParticipantSession {
     this.#onCommand = onCommand;
   }
 
-  /** The session as this device stores it. */
   get kept(): KeptSession {
     return this.#store.session;
   }
@@ -87,7 +86,6 @@ export class ParticipantSession {
     return this.kept.plan;
   }
 
-  /** The phrases of the page in the participant's language. */
   get phrases(): Phrases {
     const language = this.progress.language ?? languagesOf(this.plan)[0];
     if (this.#phrases?.language !== language) this.#phrases = phrasesOf(this.plan, language);

@@ -6,7 +6,6 @@ import type { ParticipantProfile } from '../../model/records/participant-profile
 import type { StudyRecord } from '../../model/records/study-record';
 import { StorageTimeout } from './storage-timeout';
 
-/** A session as this device stores it. */
 export interface KeptSession extends TakenPlace, ParticipantProfile {
   /** The withdrawal code; null: the participant has noted it. */
   readonly withdrawalCode: string | null;
@@ -113,7 +112,6 @@ export class StudyVault {
     return this.#request(() => this.#database.delete('motion', [study, participant, trial]));
   }
 
-  /** Deletes everything of this participant from the device. */
   forget(place: StudyPlace): Promise<void> {
     return this.#request(async () => {
       const transaction = this.#database.transaction(['sessions', 'records', 'motion'], 'readwrite');

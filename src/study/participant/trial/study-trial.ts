@@ -39,7 +39,6 @@ const maxMotionFrames = 40_000;
 /** The drop of the eyes below their calibrated height that indicates a seated participant [m]. */
 const seatedDrop = 0.25;
 
-/** The clock of a group's match. */
 export interface MatchClock {
   readonly runs: boolean;
   readonly second: number;

@@ -14,7 +14,6 @@ import { incompleteReason } from '../../model/records/trial-log';
 import { voidedBlocks } from '../../model/tables/study-tables';
 import type { MotionFile } from '../study-storage';
 
-/** The content of a data set. */
 export interface BidsContent {
   readonly plan: StudyPlan;
   readonly simulated: boolean;

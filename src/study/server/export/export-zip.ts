@@ -10,7 +10,6 @@ import type { MotionFile, ServedSoftware } from '../study-storage';
 import { bidsDataset } from './bids';
 import { portableName } from './portable-name';
 
-/** The content of an export. */
 export interface ExportContent {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
@@ -66,7 +65,6 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
   ].join('\r\n');
 }
 
-/** Returns the path of a recording in an export. */
 export const motionPath = ({ participant, trial }: Pick<MotionFile, 'participant' | 'trial'>): string =>
   `motion/${participant}-${portableName(trial)}.json`;
 

@@ -144,7 +144,6 @@ function placeRoutes({ store, guard, seats }: StudyParts): StudyRoute[] {
   ];
 }
 
-/** Returns the routes of what is recorded of a participant. */
 function recordRoutes(parts: StudyParts): StudyRoute[] {
   const { store, guard } = parts;
   return [
@@ -181,5 +180,4 @@ function recordRoutes(parts: StudyParts): StudyRoute[] {
   ];
 }
 
-/** Returns the routes of one participant. */
 export const participantRoutes = (parts: StudyParts): StudyRoute[] => [...placeRoutes(parts), ...recordRoutes(parts)];
