@@ -50,20 +50,16 @@ test.afterAll(() => {
 
 test('markup in a study is text to participants and experimenters @full', async ({ page, origin }) => {
   const experimenting = experimenter(origin);
-  await experimenting.begin(markedPlan('foreign'), false);
+  await experimenting.addStudy(markedPlan('foreign'), false);
   await page.goto(await experimenting.link('foreign', 'P01', '&quality=low'));
   await showsText(page, 'consent');
   await page.goto(`${origin}/withdraw?study=foreign`);
   await showsText(page, 'withdrawal');
 
   const plan = simulatedPlan(markedPlan('foreign-results'));
-  await experimenting.begin(plan, true);
+  await experimenting.addStudy(plan, true);
   const effects = { answers: { learned: 0.8 }, scores: {} };
-  for (const { participant, records } of simulateStudy(plan, effects, 3, 1_767_600_000)) {
-    const place = `/${plan.id}/participants/${participant}`;
-    await experimenting.ask(`${place}/claim`, 'POST', {});
-    expect((await experimenting.ask(`${place}/records`, 'POST', { records })).status).toBe(200);
-  }
+  for (const one of simulateStudy(plan, effects, 3, 1_767_600_000)) await experimenting.addSimulated(plan.id, one);
   await page.goto(origin);
   await openResults(page, plan.id);
   await showsText(page, 'results');
