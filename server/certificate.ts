@@ -1,11 +1,19 @@
 import { X509Certificate } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { hostname } from 'node:os';
+import { hostname, type NetworkInterfaceInfo, networkInterfaces } from 'node:os';
 import { join } from 'node:path';
 import { generate } from 'selfsigned';
 import type { Credentials } from 'threepoint-http';
 
 const day = 24 * 3600 * 1000;
+
+/** Returns the IPv4 addresses at which other devices on the network reach this machine. */
+export function lanAddresses(interfaces: NodeJS.Dict<NetworkInterfaceInfo[]> = networkInterfaces()): string[] {
+  return Object.values(interfaces)
+    .flatMap((addresses) => addresses ?? [])
+    .filter(({ family, internal, address }) => family === 'IPv4' && !internal && !address.startsWith('169.254.'))
+    .map(({ address }) => address);
+}
 
 function stillServes(cert: string, addresses: readonly string[], now: Date): boolean {
   const certificate = new X509Certificate(cert);

@@ -1,16 +1,28 @@
-import { resolve } from 'node:path';
+import { randomBytes } from 'node:crypto';
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { ConfigurationError } from 'threepoint-http';
 import { relayConfigurationFrom, relayEnvironment } from 'threepoint-relay';
-import { certificateFor } from './certificate';
+import { certificateFor, lanAddresses } from './certificate';
 import { configurationFrom, usage } from './configuration';
-import { lanAddresses } from './lan-addresses';
 import { shippedRoomKinds } from './room-kinds';
 import { startServer } from './start-server';
 import { startupMessage } from './startup-message';
-import { loadOrCreateSecret } from './stored-secret';
 
 const pathInRepository = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
+
+/** Returns the secret in a file, and creates it if needed, so that tokens stay valid after a restart. */
+function loadOrCreateSecret(path: string): string {
+  if (existsSync(path)) {
+    const kept = readFileSync(path, 'utf8').trim();
+    if (kept.length >= 32) return kept;
+  }
+  const secret = randomBytes(32).toString('base64url');
+  mkdirSync(dirname(path), { recursive: true });
+  writeFileSync(path, `${secret}\n`, { mode: 0o600 });
+  return secret;
+}
 
 async function main(): Promise<void> {
   const configuration = configurationFrom(process.argv.slice(2), process.env);

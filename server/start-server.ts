@@ -13,7 +13,6 @@ import { openStudyService } from 'threepoint-study/server';
 import { createPageHandler } from './page-handler';
 
 export interface StartOptions {
-  /** The folder of the built page. */
   readonly pageDirectory: string;
   readonly studyDirectory: string;
   /** null: the token that is stored with the studies. */

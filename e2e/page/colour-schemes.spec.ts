@@ -72,7 +72,7 @@ test('axe finds nothing in either colour scheme on the pages of a study @full', 
   await page.goto(`${origin}/withdraw`);
   await look(page, 'withdraw', found);
   const plan = shippedPlan('latency', 'seen');
-  await experimenter(origin).begin(plan, false);
+  await experimenter(origin).addStudy(plan, false);
   await page.goto(`${origin}/experimenter`);
   await look(page, 'sign-in', found);
   await signIn(page);
@@ -110,7 +110,7 @@ test('axe finds nothing in either colour scheme on a participant’s cards @full
   await drawSeldom(page, 3_600_000);
   const found: string[] = [];
   const plan = shortStudy('cards');
-  await experimenter(origin).begin(plan, false);
+  await experimenter(origin).addStudy(plan, false);
   await page.goto(`${origin}/?study=cards&quality=low`);
   await expect(page.getByLabel('Code', { exact: false }).first()).toBeVisible({ timeout: 60_000 });
   await look(page, 'entrance', found, pictures);

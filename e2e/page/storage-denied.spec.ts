@@ -45,7 +45,7 @@ test('a browser that stores nothing shows the page, plays with others and joins 
 }) => {
   test.setTimeout(120_000);
   const study = shortStudy('denied');
-  await experimenter(origin).begin(study, false);
+  await experimenter(origin).addStudy(study, false);
   const link = await experimenter(origin).link('denied', 'P01', '&quality=low');
   await inClosedBrowser(origin, launchOptions, async (page) => {
     await page.goto(`${origin}/?quality=low&panel=off&overlay=off`);

@@ -11,7 +11,7 @@ test('a participant whose page has just reported is there, though the experiment
 }) => {
   const study = shippedPlan('latency', 'clocks');
   const experimenting = experimenter(origin);
-  await experimenting.begin(study, false);
+  await experimenting.addStudy(study, false);
   await experimenting.consented(study, 'P01');
   await experimenting.report(study, 'P01', 'demographics');
   await page.clock.setFixedTime(Date.now() + 600_000);
@@ -25,7 +25,7 @@ test('a participant whose page has just reported is there, though the experiment
 test('a button keeps the focus while the states of the participants are refreshed @full', async ({ page, origin }) => {
   const study = shippedPlan('latency', 'refreshed');
   const experimenting = experimenter(origin);
-  await experimenting.begin(study, false);
+  await experimenting.addStudy(study, false);
   await openStudy(page, `${origin}/experimenter`, 'refreshed');
   const button = page.getByRole('button', { name: 'Simulate …' });
   await button.focus();
@@ -37,7 +37,7 @@ test('a button keeps the focus while the states of the participants are refreshe
 
 test('the list shows the open study when another one cannot be opened @full', async ({ page, origin, complaints }) => {
   complaints.allow(/ERR_FAILED/);
-  for (const id of ['kept', 'lost']) await experimenter(origin).begin(shippedPlan('latency', id), false);
+  for (const id of ['kept', 'lost']) await experimenter(origin).addStudy(shippedPlan('latency', id), false);
   await openStudy(page, `${origin}/experimenter`, 'kept');
   await expect(page.getByText('kept · 18 participants')).toBeVisible();
   await page.route('**/api/studies/lost/**', (route) => route.abort());
@@ -50,7 +50,7 @@ test('the list shows the open study when another one cannot be opened @full', as
 test('the link of a participant under way is in sight on a narrow screen too @full', async ({ page, origin }) => {
   const study = shippedPlan('latency', 'narrow');
   const experimenting = experimenter(origin);
-  await experimenting.begin(study, false);
+  await experimenting.addStudy(study, false);
   await experimenting.consented(study, 'P01');
   await experimenting.report(study, 'P01', 'archery/2/questionnaire', true);
   await page.setViewportSize({ width: 960, height: 800 });
@@ -66,7 +66,7 @@ for (const [address, said] of [
   ['results', 'asked-for, from this server.'],
 ] as const) {
   test(`the ${address} page opens the study of its address once the token is given @full`, async ({ page, origin }) => {
-    await experimenter(origin).begin(shippedPlan('latency', 'asked-for'), false);
+    await experimenter(origin).addStudy(shippedPlan('latency', 'asked-for'), false);
     await page.goto(`${origin}/${address}?study=asked-for`);
     await signIn(page);
     await expect(page.getByText(said)).toBeVisible();
@@ -94,7 +94,7 @@ test('a block of people who play together is voided for all unless the experimen
 }) => {
   const study = shippedPlan('paper', 'trios');
   const experimenting = experimenter(origin);
-  await experimenting.begin(study, false);
+  await experimenting.addStudy(study, false);
   const { members } = scheduleFor(study, 'P01').groups.ball as { readonly members: readonly string[] };
   const at = async (participant: string, step: string) => {
     await experimenting.consented(study, participant);
@@ -126,7 +126,7 @@ test('a block of people who play together is voided for all unless the experimen
 test('a block that ends while the reason is written is not taken for the next one @full', async ({ page, origin }) => {
   const study = shippedPlan('latency', 'moving-on');
   const experimenting = experimenter(origin);
-  await experimenting.begin(study, false);
+  await experimenting.addStudy(study, false);
   await experimenting.consented(study, 'P01');
   await experimenting.report(study, 'P01', 'archery/1/questionnaire');
   await openStudy(page, `${origin}/experimenter`, 'moving-on');
@@ -150,7 +150,7 @@ test('a picture of a study with two cohorts under way, for docs/study.md @nightl
     ],
   };
   const experimenting = experimenter(origin);
-  await experimenting.begin(study, false);
+  await experimenting.addStudy(study, false);
   const steps = { P01: 'end', P02: 'archery/3/trial-1', P03: 'archery/1/questionnaire', P04: 'archery/2/trial-1' };
   for (const [participant, step] of Object.entries(steps)) {
     await experimenting.consented(study, participant);

@@ -3,8 +3,6 @@ import { once } from 'node:events';
 import { fileURLToPath } from 'node:url';
 import type { Page } from '@playwright/test';
 import { checkedPlan, type StudyPlan } from '../../src/study/model/plan/plan';
-import { answerModelWith } from '../../src/study/simulation/answer-model';
-import { statedPerformanceModel } from '../../src/study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulate-study';
 import { reportFigures } from '../../tests/reliability/report-figures';
 import { expect, joinedRoom } from '../page-fixture';
@@ -52,20 +50,16 @@ test.afterAll(() => {
 
 test('markup in a study is text to participants and experimenters @full', async ({ page, origin }) => {
   const experimenting = experimenter(origin);
-  await experimenting.begin(markedPlan('foreign'), false);
+  await experimenting.addStudy(markedPlan('foreign'), false);
   await page.goto(await experimenting.link('foreign', 'P01', '&quality=low'));
   await showsText(page, 'consent');
   await page.goto(`${origin}/withdraw?study=foreign`);
   await showsText(page, 'withdrawal');
 
   const plan = simulatedPlan(markedPlan('foreign-results'));
-  await experimenting.begin(plan, true);
-  const models = { answers: answerModelWith({ learned: 0.8 }), performance: statedPerformanceModel };
-  for (const { participant, records } of simulateStudy(plan, models, 3, 1_767_600_000)) {
-    const place = `/${plan.id}/participants/${participant}`;
-    await experimenting.ask(`${place}/claim`, 'POST', {});
-    expect((await experimenting.ask(`${place}/records`, 'POST', { records })).status).toBe(200);
-  }
+  await experimenting.addStudy(plan, true);
+  const effects = { answers: { learned: 0.8 }, scores: {} };
+  for (const one of simulateStudy(plan, effects, 3, 1_767_600_000)) await experimenting.addSimulated(plan.id, one);
   await page.goto(origin);
   await openResults(page, plan.id);
   await showsText(page, 'results');

@@ -16,7 +16,7 @@ for (const name of otherBrowsers) {
         const experimenting = experimenter(origin);
         const id = `consent-${name.toLowerCase()}`;
         const example = parsePlan(readFileSync('public/studies/example.json', 'utf8'), 'example.json');
-        await experimenting.begin({ ...example, id }, false);
+        await experimenting.addStudy({ ...example, id }, false);
         await browser.open(await experimenting.link(id, 'P01', '&quality=low'));
         await browser.click('//label[contains(., "I have read this")]');
         await browser.click(buttonPath('I agree'));

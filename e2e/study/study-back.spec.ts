@@ -35,7 +35,7 @@ test('the back and forward buttons leave and restore a study at every kind of st
   test.setTimeout(300_000);
   const plan = shortStudy('back');
   const tasks = plan.tasks.map((task) => ({ ...task, tutorial: { ...task.tutorial, when: 'never' as const } }));
-  await experimenter(origin).begin({ ...plan, tasks }, true);
+  await experimenter(origin).addStudy({ ...plan, tasks }, true);
   let journeys = 0;
   const returns = () => {
     journeys += 1;
@@ -110,7 +110,7 @@ test('back to an invitation that was wrong changes nothing of a session that is 
   complaints,
 }) => {
   complaints.allow(/403.*\/claim/);
-  await experimenter(origin).begin(shortStudy('wrong'), true);
+  await experimenter(origin).addStudy(shortStudy('wrong'), true);
   await page.goto(`${origin}/withdraw`);
   const link = new URL(await experimenter(origin).link('wrong', 'P01', '&quality=low'));
   const right = link.hash;

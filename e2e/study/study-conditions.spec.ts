@@ -101,7 +101,7 @@ test('every condition changes the body: method, avatar, mirror, upper body, late
 }) => {
   test.setTimeout(240_000);
   const study = plan();
-  await experimenter(origin).begin(study, true);
+  await experimenter(origin).addStudy(study, true);
   const headset = await takePart(page, origin, study.id, 'P01');
   await consentAndFillIn(page);
   await enterVr(page, tenHertz);

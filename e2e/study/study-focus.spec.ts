@@ -65,7 +65,7 @@ async function unevenPixels(element: Locator): Promise<number> {
 
 test('the buttons of consent are in sight on a phone and in a small window @full', async ({ page, origin }) => {
   const plan = shippedPlan('paper', 'long-consent');
-  await experimenter(origin).begin(plan, false);
+  await experimenter(origin).addStudy(plan, false);
   await page.goto(await experimenter(origin).link(plan.id, 'P01', '&quality=low'));
   const card = page.locator('.study-card');
   const row = card.locator('.row');

@@ -107,10 +107,10 @@ export async function headsetOf(page: Page): Promise<EmulatedHeadset> {
  */
 export async function continueAtDesk(page: Page, origin: string, plan: StudyPlan, step: string): Promise<void> {
   const experimenting = experimenter(origin);
-  await experimenting.begin(plan, false);
+  await experimenting.addStudy(plan, false);
   await experimenting.consented(plan, 'P01');
   await experimenting.report(plan, 'P01', step);
-  await experimenting.ask(`/${plan.id}/participants/P01/release`, 'POST');
+  await experimenting.release(plan.id, 'P01');
   await page.goto(await experimenting.link(plan.id, 'P01', '&quality=low'));
   await page.getByLabel(/I have read this/).check();
   await page.getByRole('button', { name: 'I agree' }).click();
@@ -147,7 +147,7 @@ export async function calibrate(page: Page): Promise<void> {
 export const tenHertz = { stepMs: 100 };
 
 export const recordsOf = async (origin: string, id: string): Promise<readonly StudyRecord[]> =>
-  ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: StudyRecord[] }).records;
+  (await experimenter(origin).records(id)).records;
 
 export async function signIn(page: Page): Promise<void> {
   await page.getByLabel('Token').fill(experimenterToken);

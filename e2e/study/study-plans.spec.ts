@@ -44,9 +44,8 @@ test('a plan is remarked upon, simulated to its results, and the simulation dele
   await page.getByRole('button', { name: 'Delete this simulated study' }).click();
   await expect(page.getByText('“latency-simulated” is deleted.')).toBeVisible();
   expect(new URL(page.url()).searchParams.has('study')).toBe(false);
-  const { studies } = (await (await experimenter(origin).ask('')).json()) as { studies: { id: string }[] };
   // Other specs have studies on this server too.
-  const names = studies.map(({ id }) => id);
+  const names = (await experimenter(origin).studies()).map(({ id }) => id);
   expect(names).toEqual(expect.arrayContaining(['uneven', 'latency']));
   expect(names).not.toContain('latency-simulated');
 });
@@ -64,11 +63,10 @@ test('mistakes of a plan are named as study:check names them @full', async ({ pa
 });
 
 test('the records of a plan that is tried are deleted by the next try @full', async ({ page, origin }) => {
-  await experimenter(origin).begin(plan({ id: 'tried' }), false);
+  await experimenter(origin).addStudy(plan({ id: 'tried' }), false);
   await page.goto(`${origin}/experimenter?study=tried`);
   await signIn(page);
-  const recorded = async (id: string) =>
-    ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: object[] }).records.length;
+  const recorded = async (id: string) => (await experimenter(origin).records(id)).records.length;
   const tryIt = async () => {
     await page.getByRole('button', { name: 'Try it' }).click();
     await expect(page.getByRole('status')).toContainText('Open the page of a participant to try “tried-try”');
@@ -98,7 +96,7 @@ test('a plan with participants changes as a new version: the experimenter sees i
 }) => {
   complaints.allow(/409 \(Conflict\)/);
   const experimenting = experimenter(origin);
-  await experimenting.begin(plan({ id: 'changing' }), false);
+  await experimenting.addStudy(plan({ id: 'changing' }), false);
   await experimenting.ask('/changing/participants/P01/claim', 'POST', {});
   await page.goto(`${origin}/experimenter`);
   await signIn(page);

@@ -90,7 +90,7 @@ test('questions of every kind are answered alike in headset and at the desk, in 
 }) => {
   // Twenty presses in the headset, each some frames of a software renderer.
   test.setTimeout(480_000);
-  await experimenter(origin).begin(shortExample('every-kind'), true);
+  await experimenter(origin).addStudy(shortExample('every-kind'), true);
   const headset = await takePart(page, origin, 'every-kind', 'P01');
   await page.getByLabel('Language').selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();

@@ -2,8 +2,6 @@ import { readFileSync } from 'node:fs';
 import { strFromU8, unzipSync } from 'fflate';
 import { cohortsByParticipant } from '../../src/study/model/plan/allocation';
 import { checkedPlan } from '../../src/study/model/plan/plan';
-import { answerModelWith } from '../../src/study/simulation/answer-model';
-import { statedPerformanceModel } from '../../src/study/simulation/performance-model';
 import { simulatedPlan, simulateStudy } from '../../src/study/simulation/simulate-study';
 import { expect, keepPicture } from '../page-fixture';
 import { openResults, test } from './study-participant';
@@ -16,17 +14,9 @@ import { experimenter, shippedPlan } from './study-server';
 async function simulateOn(origin: string, file: unknown, effects: Readonly<Record<string, number>>) {
   const plan = simulatedPlan(checkedPlan(file));
   const experimenting = experimenter(origin);
-  await experimenting.begin(plan, true);
-  const models = { answers: answerModelWith(effects), performance: statedPerformanceModel };
-  const participants = simulateStudy(plan, models, 3, 1_767_600_000);
-  for (const { participant, records } of participants) {
-    const path = `/${plan.id}/participants/${participant}`;
-    await experimenting.ask(`${path}/claim`, 'POST', {});
-    for (let at = 0; at < records.length; at += 100) {
-      const sent = await experimenting.ask(`${path}/records`, 'POST', { records: records.slice(at, at + 100) });
-      if (!sent.ok) throw new Error(await sent.text());
-    }
-  }
+  await experimenting.addStudy(plan, true);
+  const participants = simulateStudy(plan, { answers: effects, scores: {} }, 3, 1_767_600_000);
+  for (const one of participants) await experimenting.addSimulated(plan.id, one);
   return { plan, participants };
 }
 
@@ -103,8 +93,8 @@ test('results of fifteen simulated participants; export, delete, export', async 
   await expect(page.getByText(/P02 is deleted\. Receipt 1/)).toBeVisible();
   await expect(row.getByText('Nobody has opened the page.')).toBeVisible();
   await expect(row.getByRole('button', { name: 'Export' })).toHaveCount(0);
-  const after = await experimenter(origin).ask(`/${plan.id}/participants/P02/export`);
-  expect(recordsIn(Buffer.from(await after.arrayBuffer()))).toBe(0);
+  const { zip } = await experimenter(origin).export(plan.id, { participant: 'P02' });
+  expect(recordsIn(Buffer.from(await zip.arrayBuffer()))).toBe(0);
 });
 
 /**

@@ -4,11 +4,12 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { createExperimenterClient } from '../../src/study/client/study-client';
 import { studyLink } from '../../src/study/client/study-link';
 import { parsePlan, type StudyPlan } from '../../src/study/model/plan/plan';
 import { scheduleFor } from '../../src/study/model/plan/schedule';
 import { begin } from '../../src/study/model/progress/progress';
-import type { NumberedCommand, ParticipantState } from '../../src/study/model/progress/study-api';
+import type { NumberedCommand } from '../../src/study/model/progress/study-api';
 import { recordVersion } from '../../src/study/model/records/study-record';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
@@ -94,8 +95,9 @@ export const withoutPractice = (plan: StudyPlan): StudyPlan => ({
   tasks: plan.tasks.map((task) => ({ ...task, tutorial: { ...task.tutorial, when: 'never' } })),
 });
 
-/** A client of the experimenter's API of a server. */
+/** A client of the experimenter's API of a server, which acts for participants too. */
 export function experimenter(origin: string) {
+  const client = createExperimenterClient(experimenterToken, origin);
   const ask = (path: string, method = 'GET', body?: unknown) =>
     fetch(`${origin}/api/studies${path}`, {
       method,
@@ -103,13 +105,12 @@ export function experimenter(origin: string) {
       ...(body !== undefined && { body: JSON.stringify(body) }),
     });
   return {
+    ...client,
     ask,
     /** Returns a participant's link as the experimenter's page shows it, with additional parameters of the page. */
     async link(study: string, participant: string, switches = ''): Promise<string> {
-      const { participants } = (await (await ask(`/${study}/participants`)).json()) as {
-        participants: readonly ParticipantState[];
-      };
-      const invitation = participants.find((one) => one.participant === participant)?.invitation ?? null;
+      const states = await client.participants(study);
+      const invitation = states.find((one) => one.participant === participant)?.invitation ?? null;
       return new URL(studyLink({ study, participant, invitation }).replace('#', `${switches}#`), origin).href;
     },
     /** Claims a participant's place and consents; returns the place's path in the API. */
@@ -146,10 +147,6 @@ export function experimenter(origin: string) {
     async commands(study: string, participant: string): Promise<readonly NumberedCommand[]> {
       const response = await ask(`/${study}/participants/${participant}/commands`);
       return ((await response.json()) as { commands: NumberedCommand[] }).commands;
-    },
-    async begin(plan: StudyPlan, simulated: boolean): Promise<void> {
-      const response = await ask('', 'POST', { plan, simulated });
-      if (!response.ok) throw new Error(`the study "${plan.id}" was not begun: ${await response.text()}`);
     },
   };
 }

@@ -24,7 +24,7 @@ test('three participants play the ball game together, each in a headset of their
   origin,
 }) => {
   test.setTimeout(900_000);
-  await experimenter(origin).begin(withoutPractice(shortStudy('trio', 'paper', 'ball', matchSeconds)), true);
+  await experimenter(origin).addStudy(withoutPractice(shortStudy('trio', 'paper', 'ball', matchSeconds)), true);
   const pages = await openGroup(browser, origin, 'trio');
   const all = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
   const [first, second, third] = pages;
@@ -37,8 +37,7 @@ test('three participants play the ball game together, each in a headset of their
   // The experimenter pauses one of them: the match stands for all three.
   const match = (page: Page) => page.evaluate(() => window.threepoint?.probe().game);
   const clocks = () => all(async (page) => ((await match(page)) as { secondsLeft: number }).secondsLeft);
-  const command = (type: 'pause' | 'resume') =>
-    experimenter(origin).ask('/trio/participants/P02/commands', 'POST', { type });
+  const command = (type: 'pause' | 'resume') => experimenter(origin).command('trio', 'P02', { type });
   await command('pause');
   await expect.poll(() => all(screen), patience).toEqual(['standing', 'paused', 'standing']);
   await keepPicture(first, 'study-standing');
@@ -132,7 +131,7 @@ test('three participants’ tables state a reload, a lost network, a void and a 
 }) => {
   test.setTimeout(900_000);
   const experimenting = experimenter(origin);
-  await experimenting.begin(sessionPlan(), true);
+  await experimenting.addStudy(sessionPlan(), true);
   const network = delayedSockets();
   let withdrawalCode = '';
   const pages = await openGroup(browser, origin, 'session', async (page, participant) => {
@@ -171,8 +170,8 @@ test('three participants’ tables state a reload, a lost network, a void and a 
   // Block 2: the experimenter voids it in its match, and it is played again.
   await startAll();
   for (const participant of people) {
-    const command = { type: 'void-block', reason: 'the phone rang', repeat: true };
-    await experimenting.ask(`/session/participants/${participant}/commands`, 'POST', command);
+    const command = { type: 'void-block', reason: 'the phone rang', repeat: true } as const;
+    await experimenting.command('session', participant, command);
   }
   for (const page of pages) await reaches(page, 'trial-ready', 60_000);
   await keepPicture(first, 'study-voided');
@@ -180,7 +179,7 @@ test('three participants’ tables state a reload, a lost network, a void and a 
   await answerAll('end');
   await Promise.all(pages.map((page) => expect.poll(async () => (await study(page)).unsent, patience).toBe(0)));
 
-  const zipOf = async () => new Uint8Array(await (await experimenting.ask('/session/export')).arrayBuffer());
+  const zipOf = async () => new Uint8Array(await (await experimenting.export('session')).zip.arrayBuffer());
   const zip = await zipOf();
   expect(verifyExport(zip).problems).toEqual([]);
   const trials = rowsIn(zip, 'trials');

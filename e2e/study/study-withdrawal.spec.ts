@@ -1,5 +1,4 @@
 import type { Page } from '@playwright/test';
-import type { ParticipantState } from '../../src/study/model/progress/study-api';
 import { expect, keepPicture } from '../page-fixture';
 import { recordsOf, test } from './study-participant';
 import { experimenter, shortStudy } from './study-server';
@@ -27,7 +26,7 @@ test('a participant withdraws alone by the code on the page beside it and keeps 
   complaints.allow(/404.*\/withdraw/, /401.*\/api\/studies/);
   test.setTimeout(180_000);
   const remote = { contact: 'Write to lab@example.org, or call 555 0100.', freeSpace: 2 };
-  await experimenter(origin).begin({ ...shortStudy('leaving'), remote }, false);
+  await experimenter(origin).addStudy({ ...shortStudy('leaving'), remote }, false);
   await page.goto(await experimenter(origin).link('leaving', 'P01', '&quality=low'));
   await page.getByLabel(/I have read this/).check();
   await page.getByRole('button', { name: 'I agree' }).click();
@@ -71,10 +70,8 @@ test('a participant withdraws alone by the code on the page beside it and keeps 
   expect(download.suggestedFilename()).toBe(`receipt-leaving-${number}.txt`);
 
   expect(await recordsOf(origin, 'leaving')).toEqual([]);
-  const { participants } = (await (await experimenter(origin).ask('/leaving/participants')).json()) as {
-    participants: readonly ParticipantState[];
-  };
-  expect(participants[0]).toMatchObject({ withdrawn: true, claimed: false, invitation: null, records: 0 });
+  const [place] = await experimenter(origin).participants('leaving');
+  expect(place).toMatchObject({ withdrawn: true, claimed: false, invitation: null, records: 0 });
   expect(await sessionsInBrowser(page)).toBe(0);
 });
 
@@ -85,7 +82,7 @@ test('a participant whose network fails while everything is deleted is not told 
 }) => {
   complaints.allow(/404.*\/withdraw/, /ERR_FAILED/);
   const experimenting = experimenter(origin);
-  await experimenting.begin(shortStudy('unheard'), false);
+  await experimenting.addStudy(shortStudy('unheard'), false);
   const claimed = await experimenting.ask('/unheard/participants/P01/claim', 'POST', {});
   const { withdrawalCode } = (await claimed.json()) as { withdrawalCode: string };
   await page.goto(`${origin}/withdraw?study=unheard`);

@@ -25,7 +25,7 @@ test('a participant gets from consent to the second block despite a reload witho
 }) => {
   complaints.allow(/ERR_FAILED.*\/api\/studies/);
   test.setTimeout(240_000);
-  await experimenter(origin).begin(shortStudy('short'), true);
+  await experimenter(origin).addStudy(shortStudy('short'), true);
   const headset = await takePart(page, origin, 'short', 'P01');
 
   await expect(page.getByRole('heading', { name: /Taking part/ })).toBeVisible();
@@ -114,8 +114,8 @@ test('a participant gets from consent to the second block despite a reload witho
   }
 
   const zip = test.info().outputPath('short.zip');
-  const exported = await experimenter(origin).ask('/short/export');
-  await writeFile(zip, Buffer.from(await exported.arrayBuffer()));
+  const exported = await experimenter(origin).export('short');
+  await writeFile(zip, Buffer.from(await exported.zip.arrayBuffer()));
   const { stdout } = await promisify(execFile)('npm', ['run', '-s', 'tool', '--', 'study:verify', zip]);
   expect(stdout).toMatch(/: sound: \d+ files, recomputed from \d+ records\./);
 });

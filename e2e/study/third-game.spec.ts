@@ -111,7 +111,7 @@ const touchLitTarget = (page: Page): Promise<void> =>
 test('the results page of a study shows tables and figures of the third game @full', async ({ browser, origin }) => {
   const page = await newPage(browser, origin);
   await page.setViewportSize({ width: 1280, height: 860 });
-  await experimenter(origin).begin({ ...touchStudy(), participants: 8 }, false);
+  await experimenter(origin).addStudy({ ...touchStudy(), participants: 8 }, false);
   await openStudy(page, '/experimenter', 'lamps');
   await page.getByRole('button', { name: 'Simulate …' }).click();
   await page.getByRole('button', { name: 'Simulate', exact: true }).click();
@@ -131,7 +131,7 @@ test('two participants play the third game in a study, and their trials are reco
   browser,
   origin,
 }) => {
-  await experimenter(origin).begin(touchStudy(), true);
+  await experimenter(origin).addStudy(touchStudy(), true);
   const people = ['P01', 'P02'];
   const pages: Page[] = [];
   for (const participant of people) {

@@ -30,7 +30,6 @@ interface RelayServiceOptions {
   readonly endRoom: (room: string) => void;
   /** Stores the join counts of all processes; null: a single process. */
   readonly redis: Redis | null;
-  /** The routes of avatars and voices. */
   readonly roomRoutes: readonly Route<'client'>[];
 }
 

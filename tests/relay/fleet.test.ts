@@ -9,6 +9,7 @@ import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { isNightly } from '../nightly';
 import { printFigures } from '../print-figures';
 import { installed } from '../server/installed';
+import { head, offer, webSocket } from '../server/request-pipelines';
 import { type StartedServer, startServer } from '../server/started-server';
 import { arrive, pause, until } from './running-relay';
 
@@ -71,9 +72,6 @@ async function metric(url: string, name: string): Promise<number> {
   return Number(new RegExp(`^${name} (\\S+)$`, 'm').exec(text)?.[1] ?? Number.NaN);
 }
 
-const head = (line: string, ...headers: readonly string[]): string =>
-  [`${line} HTTP/1.1`, 'Host: localhost', ...headers, '', ''].join('\r\n');
-const offer = (protocol: string): string[] => ['Connection: Upgrade', `Upgrade: ${protocol}`];
 const body = '{"kind":"ball"}';
 
 /** Requests that follow each other on one connection, each with the status of its answer. */
@@ -88,12 +86,6 @@ const pipelined: readonly (readonly [request: string, status: string])[] = [
   [head('HEAD /'), '200'],
   [head('GET /absent'), '404'],
 ];
-const webSocket = head(
-  'GET /relay/?EIO=4&transport=websocket&room=pipeline',
-  ...offer('websocket'),
-  'Sec-WebSocket-Version: 13',
-  'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==',
-);
 
 /** Sends these requests at once on one connection, and resolves to the statuses of the answers. */
 async function statusesOf(url: string, requests: readonly string[]): Promise<readonly string[]> {
@@ -213,7 +205,7 @@ describe.skipIf(missing)(
     test('requests on one connection, among them upgrades, are answered in turn through the proxy', async () => {
       const requests = [
         ...Array.from({ length: isNightly ? 100 : 5 }, () => pipelined).flat(),
-        [webSocket, '101'] as const,
+        [head('GET /relay/?EIO=4&transport=websocket&room=pipeline', ...webSocket(13)), '101'] as const,
       ];
       const connections = isNightly ? 50 : 20;
       const answers = await Promise.all(

@@ -1,6 +1,6 @@
 // @module-tag full
 
-import { nextRandom } from 'threepoint/math';
+import { createRandom } from 'threepoint/math';
 import { ballClientPolicy, ballKind } from 'threepoint-games/ball';
 import { RoomTokens } from 'threepoint-relay';
 import { describe, expect, onTestFinished, test } from 'vitest';
@@ -61,12 +61,7 @@ test('a relay killed in a game and restarted brings all back; the round is void'
 test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async () => {
   const server = await forkServer();
   const lasting = isNightly ? 300 : 6;
-  let chance = { seed: 2460 };
-  const drawn = () => {
-    const { value, state } = nextRandom(chance);
-    chance = state;
-    return value;
-  };
+  const drawn = createRandom(2460);
   // A loss costs the time to find out and to send again.
   const way = await createSlowWay(server.port, () => 100 + 60 * (drawn() - 0.5) + (drawn() < 0.02 ? 300 : 0));
   onTestFinished(() => way.close());

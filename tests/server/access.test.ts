@@ -1,7 +1,7 @@
 import { createHash, randomUUID } from 'node:crypto';
 import { request as httpRequest, type OutgoingHttpHeaders } from 'node:http';
 import { join } from 'node:path';
-import { defaultCalibration, writeRecording } from 'threepoint/core';
+import { defaultCalibration } from 'threepoint/core';
 import { games } from 'threepoint-games/all';
 import { type BallState, ballKind } from 'threepoint-games/ball';
 import { RoomTokens, relayConfigurationFrom } from 'threepoint-relay';
@@ -12,7 +12,7 @@ import { startServer as startFromSource } from '../../server/start-server';
 import { poseBytes, type RunningRelay, rawGuest, rawSocket, startRelay, tokenFor, until } from '../relay/running-relay';
 import { guestOfTest } from '../relay/until-finished';
 import { reportFigures } from '../reliability/report-figures';
-import { begun, paperPlan } from '../study/model/studies';
+import { begun, paperPlan, shortRecording } from '../study/model/studies';
 import { studySeats } from '../study/server/running-studies';
 import { startedStudy } from '../study/server/stored-studies';
 import { directoryWith } from '../temporary-directory';
@@ -63,20 +63,8 @@ async function wholeServer(): Promise<WholeServer> {
   return current;
 }
 
-const head = {
-  position: { x: 0, y: 1.6, z: 0 },
-  orientation: { x: 0, y: 0, z: 0, w: 1 },
-  tracking: 'tracked',
-} as const;
-const recording = writeRecording({
-  device: 'Test headset',
-  rateHz: 72,
-  calibration: null,
-  frames: [{ time: 0, head, leftHand: null, rightHand: null }],
-});
-
 function bodyOf({ json }: HttpRow, { records }: WholeServer): string | undefined {
-  if (json === 'motion') return recording;
+  if (json === 'motion') return shortRecording;
   if (json === undefined) return undefined;
   const bodies = {
     plan: { plan: { ...plan, id: 'another' }, simulated: false },

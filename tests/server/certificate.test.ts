@@ -2,8 +2,7 @@ import { X509Certificate } from 'node:crypto';
 import { statSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
-import { certificateFor } from '../../server/certificate';
-import { lanAddresses } from '../../server/lan-addresses';
+import { certificateFor, lanAddresses } from '../../server/certificate';
 import { hasFileModes } from '../platform';
 import { directoryWith } from '../temporary-directory';
 

@@ -30,13 +30,14 @@ export interface Pipeline {
   readonly leavesAt: number | null;
 }
 
-const head = (line: string, ...headers: readonly string[]): string =>
+/** Returns the head of a request. */
+export const head = (line: string, ...headers: readonly string[]): string =>
   `${[`${line} HTTP/1.1`, 'Host: localhost', ...headers].join('\r\n')}\r\n\r\n`;
 
 const authorized = `Authorization: Bearer ${experimenterToken}`;
 const json = 'Content-Type: application/json';
-const offer = (protocol: string): string[] => ['Connection: Upgrade', `Upgrade: ${protocol}`];
-const webSocket = (version: number): string[] => [
+export const offer = (protocol: string): string[] => ['Connection: Upgrade', `Upgrade: ${protocol}`];
+export const webSocket = (version: number): string[] => [
   ...offer('websocket'),
   `Sec-WebSocket-Version: ${version}`,
   'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==',

@@ -4,8 +4,7 @@ import { shippedPhrases } from '../../src/study/model/phrases/phrases';
 import { checkedPlan } from '../../src/study/model/plan/plan';
 import { checkedRecord, type TrialRecord } from '../../src/study/model/records/study-record';
 import { studyTables } from '../../src/study/model/tables/study-tables';
-import { modelsWith, simulateStudy } from '../../src/study/simulation/simulate-study';
-import { paperPlan } from './model/studies';
+import { paperPlan, simulatedRecords } from './model/studies';
 
 /** The paper's study with one task: this game, for groups of two. */
 function touchPlan() {
@@ -25,9 +24,7 @@ test('an entry makes a game a task in two languages', () => {
 
 test('the questionnaire of the third game is asked by the name of the game', () => {
   const plan = touchPlan();
-  const records = simulateStudy(plan, modelsWith(plan, { answers: {}, scores: {} }), 5, 1e9).flatMap(
-    (participant) => participant.records,
-  );
+  const records = simulatedRecords(plan);
   const table = studyTables(records, plan).find(({ name }) => name === 'answers');
   expect(table?.rows).toHaveLength(8 * plan.conditions.length);
   expect(table?.rows[0]).toMatchObject({ task: 'touch', questionnaire: 'touch', question: 'reach' });
@@ -35,8 +32,7 @@ test('the questionnaire of the third game is asked by the name of the game', () 
 
 test('a plan has the third game, and its recorded trial is a row of the table', () => {
   const plan = touchPlan();
-  const simulated = simulateStudy(plan, modelsWith(plan, { answers: {}, scores: {} }), 5, 1e9);
-  const example = simulated[0]?.records.find(({ kind }) => kind === 'trial') as TrialRecord;
+  const example = simulatedRecords(plan).find(({ kind }) => kind === 'trial') as TrialRecord;
   const outcome = { ...example.body.outcome, score: 8, maximum: 8, ended: 'all-touched' };
   const record = checkedRecord({ ...example, body: { ...example.body, outcome } }, plan);
   const table = studyTables([record], plan).find(({ name }) => name === 'trials');

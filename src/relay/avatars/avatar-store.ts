@@ -17,7 +17,6 @@ export interface Reservation {
   cancel(): void;
 }
 
-/** The owner of a file. */
 export interface AvatarOwner {
   readonly room: string;
   readonly identity: string;

@@ -63,7 +63,6 @@ export class MessageHandler {
     } else this.#countBad(client, 'message');
   }
 
-  /** Removes a client whose connection has ended. */
   onDisconnect({ id, pass }: Client): void {
     const hosted = this.#rooms.wake(pass.room);
     hosted?.clients.delete(id);

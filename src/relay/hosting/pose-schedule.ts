@@ -4,7 +4,6 @@ import { clamp } from 'threepoint/math';
 /** A room that may have poses to send. */
 export interface ScheduledRoom {
   readonly room: { sendPoses(): void };
-  /** The clients that receive them. */
   readonly clients: { readonly size: number };
   /** Time of the last send [s]. */
   sentAt: number;
@@ -56,7 +55,6 @@ export class PoseSchedule {
     this.#busyShare = busyShare;
   }
 
-  /** Schedules a send. */
   add(sender: ScheduledRoom): void {
     if (this.#waiting.has(sender)) return;
     this.#waiting.add(sender);

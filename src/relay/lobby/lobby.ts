@@ -24,7 +24,6 @@ export function createLobby(redis: Redis | null, node: string, log: Logger) {
   }
 
   return {
-    /** Publishes the rooms of this process. */
     publish(rooms: readonly RoomListing[]): void {
       own = rooms;
       const now = Date.now();

@@ -1,6 +1,5 @@
 import { Counter, collectDefaultMetrics, Gauge, Histogram, Registry } from 'prom-client';
 
-/** The metrics of a relay, as /metrics reports them. */
 export interface RelayMetrics {
   readonly registry: Registry;
   readonly counts: RelayCounts;
@@ -35,7 +34,6 @@ export interface RelayCensus extends HostCensus {
   readonly connections: number;
   /** Connections refused since the start, because their address had too many. */
   readonly refusedConnections: number;
-  /** Avatar files in the store. */
   readonly avatars: number;
   /** Their bytes, uploads under way included. */
   readonly avatarBytes: number;

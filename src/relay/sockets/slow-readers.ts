@@ -6,7 +6,6 @@ const slowSeconds = 5;
 const maxWaiting = 256;
 /** The most bytes that may wait on a connection that still receives poses: with TLS each write takes a moment. */
 export const maxQueuedBytes = 4096;
-/** Interval of the check [ms]. */
 const slowCheckMs = 1000;
 
 interface Reader {

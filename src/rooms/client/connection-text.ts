@@ -1,6 +1,7 @@
 import type { ConnectionStatus } from './connection';
 
-const endings: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>> = {
+/** Why a connection has ended, in sentences. */
+export const endings: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>> = {
   replaced: 'You opened this room somewhere else, where your seat is now.',
   yielded: 'A person took this seat.',
   left: 'You left the room.',

@@ -70,11 +70,8 @@ export abstract class RoomSession<Game extends HostedGame> implements Connection
   readonly #knowsClock: boolean;
   readonly #clock = new ClockSync();
   readonly #match: MatchPrediction<Game>;
-  /** The absences of the room by number. */
   readonly #absences = new Map<number, Absence>();
-  /** The room; null before the first welcome. */
   #known: KnownRoom | null = null;
-  /** The skeletons of the players by seat. */
   #skeletons: (Skeleton | null)[] = [];
   #calibration: Calibration;
   #avatar: AvatarRef;

@@ -17,8 +17,6 @@ export interface SocketConnectionOptions {
   readonly pass: RoomPass;
   /** Default: `performance.now`, which skips no pauses. */
   readonly clock?: LocalClock;
-  /** Returns numbers in [0, 1) for the back-off. */
-  readonly chance?: () => number;
   /** Called when the connection has joined, has lost or failed an attempt, or has ended. */
   readonly onStatus?: () => void;
 }
@@ -37,7 +35,7 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
   readonly #policy: ClientPolicy<Game>;
   readonly #pass: RoomPass;
   readonly #clock: LocalClock;
-  readonly #backOff: BackOff;
+  readonly #backOff = new BackOff();
   readonly #socket: Socket;
   readonly #onStatus: () => void;
   #phase: ConnectionStatus['phase'] = 'connecting';
@@ -51,7 +49,7 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
 
   constructor(
     policy: ClientPolicy<Game>,
-    { url, room, visitor, pass, clock = runningTime, chance, onStatus = () => undefined }: SocketConnectionOptions,
+    { url, room, visitor, pass, clock = runningTime, onStatus = () => undefined }: SocketConnectionOptions,
   ) {
     super(policy, visitor, false);
     this.#policy = policy;
@@ -59,7 +57,6 @@ export class SocketConnection<Game extends HostedGame> extends RoomSession<Game>
     this.#clock = clock;
     this.#leftOut = clock.skippedSeconds;
     this.#onStatus = onStatus;
-    this.#backOff = new BackOff(chance);
     const { origin, pathname } = new URL(url);
     this.#socket = io(origin, {
       path: `${pathname.replace(/\/$/, '')}/relay`,

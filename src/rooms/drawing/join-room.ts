@@ -12,6 +12,7 @@ import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
 import * as v from 'valibot';
 import type { ClientPolicy } from '../client/client-policy';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from '../client/connection';
+import { endings } from '../client/connection-text';
 import { RoomAddress } from '../client/room-address';
 import { RoomClient } from '../client/room-client';
 import { type PassStorage, tabStorage } from '../client/room-pass';
@@ -161,25 +162,10 @@ async function connect<Game extends HostedGame>(
         return;
       }
       connection.leave();
-      reject(new Error(reason === null ? 'no answer' : reasons[reason]));
+      reject(new Error(reason === null ? 'no answer' : endings[reason]));
     });
   });
 }
-
-const reasons: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>> = {
-  unreachable: 'the server does not answer',
-  forbidden: 'this page may not use the server',
-  refused: 'the server refuses the pass',
-  replaced: 'the same person has joined in another page',
-  yielded: 'another person has the place',
-  left: 'the page has left',
-  misbehaved: 'the server found fault with the messages',
-  slow: 'this page reads too slowly',
-  full: 'the server has no place for another room',
-  stopping: 'the server is stopping',
-  closed: 'the room was closed',
-  'old-page': 'the server has another version of threepoint-rooms',
-};
 
 class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Game> {
   readonly client: RoomClient<Game>;

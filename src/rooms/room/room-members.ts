@@ -21,7 +21,6 @@ export class RoomMembers {
     return this.#members.size;
   }
 
-  /** The number of clients without a seat. */
   get spectators(): number {
     let spectators = 0;
     for (const client of this.#members.keys()) if (this.#seats.indexOf(client) === null) spectators += 1;

@@ -67,7 +67,6 @@ export class Room<Game extends HostedGame> {
     this.#match = new RoomMatch(policy, this.#seats, host);
   }
 
-  /** The name of the game. */
   get kind(): string {
     return this.#policy.kind;
   }

@@ -38,7 +38,6 @@ interface Seat {
   member: Member;
   /** The client; null: the connection is lost. */
   client: ClientId | null;
-  /** The name that the others see. */
   name: string;
   /** Room time at which the connection was lost [s]; null: connected. */
   disconnectedAt: number | null;
@@ -233,7 +232,6 @@ export class Seats {
     this.#listener.changed(index);
   }
 
-  /** Empties a seat. */
   vacate(index: number): void {
     if (!this.at(index)) return;
     this.#leaveMatch(index);

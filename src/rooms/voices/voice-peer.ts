@@ -88,7 +88,6 @@ export class VoicePeer {
     for (const { sender } of this.#pc.getTransceivers()) void sender.replaceTrack(track);
   }
 
-  /** Handles a signal of the other page. */
   async receive(body: SignalBody): Promise<void> {
     try {
       if ('description' in body) await this.#takeDescription(body.description);

@@ -17,7 +17,6 @@ import type {
 import type { StudyRecord } from '../model/records/study-record';
 import type { SimulatedParticipant } from '../simulation/simulate-study';
 
-/** The message for a host without studies. */
 export const noStudiesHere = 'Studies need a threepoint server, and this page comes from a host without one.';
 
 /** There was no answer: no network, no server, or an aborted request. A later attempt may succeed. */
@@ -150,7 +149,6 @@ export function createParticipantClient(server: string) {
 export function createWithdrawalClient(server: string) {
   const answer = answersOf(server);
   return {
-    /** Returns the public part of the study. */
     study: (study: string): Promise<PublicStudy> => answer(pathOf(study)),
     /** Deletes everything, or only the recordings, of the participant with this code, in any notation of the code. */
     withdraw: (study: string, code: string, only?: 'motion'): Promise<Receipt> =>
@@ -208,7 +206,6 @@ export function createExperimenterClient(token: string, server: string) {
       }
       await answer(`${place}/progress`, { method: 'PUT', token, body: progress });
     },
-    /** Deletes a simulated study completely. */
     deleteSimulated: (study: string): Promise<void> => answer(pathOf(study), { method: 'DELETE', token }),
   };
 }

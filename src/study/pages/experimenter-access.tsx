@@ -23,7 +23,6 @@ export const client = signal<ExperimenterClient | null>(null);
 /** The studies of the server as they were last requested. */
 const listed = signal<readonly StudyListing[]>([]);
 
-/** Requests the list of studies again. */
 export async function listStudies(from: ExperimenterClient): Promise<void> {
   listed.value = await from.studies();
 }

@@ -51,7 +51,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
       throw new Error(`records.json: records[${index}]: ${reasonOf(error)}`);
     }
   });
-  // Exports of an unchanged plan, and older ones, name no version.
+  // Exports of an unchanged plan name no version.
   const versionPart =
     'planVersion' in file && typeof file.planVersion === 'number' ? { planVersion: file.planVersion } : {};
   return { plan, records, simulated: 'simulated' in file && file.simulated === true, ...versionPart };

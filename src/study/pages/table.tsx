@@ -29,7 +29,6 @@ interface TableProps<Row> {
   readonly dense?: boolean;
 }
 
-/** A table with a caption. */
 export const Table = <Row,>({ caption, columns, rows, look, dense = false }: TableProps<Row>) => (
   // biome-ignore lint/a11y/useSemanticElements: a fieldset is for fields
   // biome-ignore lint/a11y/noNoninteractiveTabindex: keys scroll a table that is wider than the page

@@ -53,7 +53,6 @@ export class BodyMeasurement {
     });
   }
 
-  /** The step of the measurement; null: there is no measurement. */
   get step(): CalibrationStep | null {
     return this.#step;
   }
@@ -68,7 +67,6 @@ export class BodyMeasurement {
     this.#guide.start();
   }
 
-  /** Takes a tracking frame into account. */
   observe(frame: TrackingFrame): void {
     this.#eyeHeight = frame.head.position.y;
     this.#guide.observe(frame);

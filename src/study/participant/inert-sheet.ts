@@ -25,7 +25,6 @@ export class InertSheet {
     this.#causedAt = this.#now();
   }
 
-  /** Returns the screen as it is shown now; null: none is. */
   shown(screen: StudyScreen | null): StudyScreen | null {
     const now = this.#now();
     const id = screen?.id ?? null;

@@ -66,7 +66,7 @@ export class SessionFlow {
   /** Whether a trial is being played; one that still waits for others is not. */
   get playing(): boolean {
     const { current } = this.#trials;
-    return current !== null && current.waitingFor === null;
+    return current !== null && current.runner.waitingFor === null;
   }
 
   /** Whether the round on the page is paused. */
@@ -101,14 +101,14 @@ export class SessionFlow {
   #followMatch(): void {
     const { current } = this.#trials;
     if (!current) return;
-    const absences = current.takeAbsences();
+    const absences = current.runner.takeAbsences?.() ?? [];
     for (const absence of absences) this.session.apply({ type: 'absence', absence });
     const { matchClock } = current;
-    const { running, waiting = false } = this.session.progress;
+    const { running, waiting } = this.session.progress;
     const changed = matchClock !== null && running && matchClock.runs === waiting;
     if (changed) this.session.apply({ type: 'match-clock', ...matchClock });
     if (changed || absences.length > 0) void this.exchange();
-    if (!current.interrupted) return;
+    if (!current.runner.interrupted) return;
     this.#inertSheet.expectChange();
     this.#apply({ type: 'reload' });
   }
@@ -135,7 +135,6 @@ export class SessionFlow {
     this.show();
   }
 
-  /** Shows the present state of the session. */
   show(): void {
     const { session } = this;
     const { display } = this.#page;
@@ -190,8 +189,8 @@ export class SessionFlow {
         rejection: this.#rejection,
         stopping: this.#stopping,
         playing: current !== null,
-        waitingFor: current?.waitingFor ?? null,
-        standing: current?.standing ?? false,
+        waitingFor: current?.runner.waitingFor ?? null,
+        standing: current?.runner.pausedByOther ?? false,
         awaited: this.#trials.awaited,
       },
       this.#actions,

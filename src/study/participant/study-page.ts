@@ -16,7 +16,6 @@ export interface StudyDisplay {
 
 /** The address with which the page was opened. */
 export interface StudyAddressBar {
-  /** Returns the invitation in the address, or null. */
   invitation(): string | null;
   /** Loads the page of this place, even if the address is unchanged. */
   goTo(place: Invited): void;

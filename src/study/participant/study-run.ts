@@ -16,7 +16,6 @@ export interface StudyRun {
   readonly object: VrStudyPanel['object'];
   /** Whether no trial is being played, so that hands that point at the sheet draw no bow. */
   readonly idle: boolean;
-  /** Whether the round on the page is paused. */
   readonly paused: boolean;
   /** Takes a drawn frame into account; null: the head was not seen. */
   frame(time: number, frame: TrackingFrame | null): void;

@@ -68,7 +68,6 @@ export class StudyVisit {
     return this.#flow;
   }
 
-  /** Whether closing the page would lose answers. */
   get losesAnswers(): boolean {
     const { unsaved, unsent } = this.state();
     return unsaved > 0 && unsent > 0;

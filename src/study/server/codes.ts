@@ -9,7 +9,6 @@ export function newCode(): string {
   return (characters.match(/.{4}/g) as string[]).join('-');
 }
 
-/** Returns a typed code in its normal form. */
 export function normalisedCode(typed: string): string {
   const characters = typed
     .toUpperCase()

@@ -5,7 +5,6 @@ import { randomFor } from '../model/plan/shuffle';
 export interface RandomSource {
   /** Returns a number in [0, 1). */
   uniform(): number;
-  /** Returns a standard normal number. */
   normal(): number;
 }
 

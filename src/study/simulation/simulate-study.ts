@@ -1,30 +1,16 @@
 import { ValidationError } from 'threepoint/core';
-import { type GameDescription, type GameName, games } from 'threepoint-games/all';
+import { type GameDescription, games } from 'threepoint-games/all';
 import type { LocalizedText } from '../model/phrases/localized-text';
-import { cohortsByParticipant } from '../model/plan/allocation';
-import { participantsOf, type StudyPlan } from '../model/plan/plan';
+import { participantsOf, type StudyPlan, type StudyTask } from '../model/plan/plan';
 import { type PlayedStep, type Schedule, type StudyStep, scheduleFor } from '../model/plan/schedule';
 import { applyEvent, type ProgressEvent } from '../model/progress/apply-event';
 import { begin, currentStep, type Progress, resumed } from '../model/progress/progress';
 import type { Demographics } from '../model/records/demographics';
 import type { StudyRecord } from '../model/records/study-record';
 import type { TrialOutcome } from '../model/records/trial-log';
-import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
-import {
-  type Circumstances,
-  drawPlayer,
-  drawShared,
-  drawTargets,
-  type PerformanceModel,
-  type Player,
-  statedPerformanceModel,
-} from './performance-model';
+import { drawAnswers, drawPerson } from './answer-model';
+import { drawPlayer, drawShared, drawTargets, type Player } from './performance-model';
 import { type RandomSource, randomSource } from './random-source';
-
-export interface SimulationModels {
-  readonly answers: AnswerModel;
-  readonly performance: PerformanceModel;
-}
 
 /** The effects in a simulated study, by the id of a condition or a cohort. */
 export interface StatedEffects {
@@ -34,17 +20,26 @@ export interface StatedEffects {
   readonly scores: Readonly<Record<string, number>>;
 }
 
-/** Returns the models with these effects; throws a ValidationError if the plan has no such condition or cohort. */
-export function modelsWith(
+export const noEffects: StatedEffects = { answers: {}, scores: {} };
+
+/** The effect of the second and later blocks on the chance to hit or catch. */
+const practiceEffect = 0.02;
+
+/** The chance per trial of a reload, and per block of being voided. */
+const mishaps = { reload: 0.05, voided: 0.02 };
+
+/** Throws a ValidationError if the plan has no condition or cohort of an effect. */
+export function rejectUnknownEffects(
   { conditions, cohorts = [] }: StudyPlan,
   { answers, scores }: StatedEffects,
-): SimulationModels {
+): void {
   const known = [...conditions, ...cohorts].map(({ id }) => id);
-  for (const id of [...Object.keys(answers), ...Object.keys(scores)]) {
-    if (known.includes(id)) continue;
-    throw new ValidationError('effect', `there is no condition or cohort "${id}": expected one of ${known.join(', ')}`);
-  }
-  return { answers: answerModelWith(answers), performance: { ...statedPerformanceModel, effects: scores } };
+  const unknown = [...Object.keys(answers), ...Object.keys(scores)].find((id) => !known.includes(id));
+  if (unknown === undefined) return;
+  throw new ValidationError(
+    'effect',
+    `there is no condition or cohort "${unknown}": expected one of ${known.join(', ')}`,
+  );
 }
 
 /** Describes the effects: 'answers +0.5 points under "late-100".', or that there are none. */
@@ -101,105 +96,40 @@ const slotSeconds = 7200;
 /** Guards against a schedule that never ends. */
 const maxSteps = 10_000;
 
+/** A simulated study; the same plan, effects and seed give the same one. */
+interface Simulation {
+  readonly plan: StudyPlan;
+  readonly effects: StatedEffects;
+  readonly seed: number;
+}
+
 /**
  * Yields the simulated participants of a whole study one after the other. They use the same sessions as people, with
- * reloads in the middle of trials and voided blocks. `at` is the start of the first one [s since 1970]. The same plan,
- * models and seed give the same study.
+ * reloads in the middle of trials and voided blocks. `at` is the start of the first one [s since 1970]. Throws a
+ * ValidationError if the plan has no condition or cohort of an effect.
  */
 export function* simulatedParticipants(
   plan: StudyPlan,
-  models: SimulationModels,
+  effects: StatedEffects,
   seed: number,
   at: number,
 ): Generator<SimulatedParticipant> {
-  const rounds = new SimulatedRounds(plan, models, seed);
+  rejectUnknownEffects(plan, effects);
   for (const [index, participant] of participantsOf(plan).entries()) {
-    yield new SimulatedSession(rounds, participant, at + index * slotSeconds).run();
+    yield new SimulatedSession({ plan, effects, seed }, participant, at + index * slotSeconds).run();
   }
 }
 
-/** Returns all simulated participants of a study. */
 export const simulateStudy = (...study: Parameters<typeof simulatedParticipants>): readonly SimulatedParticipant[] => [
   ...simulatedParticipants(...study),
 ];
 
-/** A trial of a participant, whose `place` is that among the players of the group. */
-interface SimulatedTrial {
-  readonly performance: PerformanceModel;
-  readonly circumstances: Circumstances;
-  readonly players: readonly Player[];
-  readonly place: number;
-  readonly ownRandom: RandomSource;
-  /** The source that draws the same round for every player. */
-  readonly sharedRandom: RandomSource;
-}
-
-/** Draws the result of a trial of a game. */
-function drawTrial(game: GameName, trial: SimulatedTrial): TrialOutcome {
-  const { performance, circumstances, players, place, ownRandom, sharedRandom } = trial;
-  const { simulated, ends }: GameDescription = games[game];
-  if ('points' in simulated) {
-    return drawTargets({ ...simulated, ends }, performance, players[place] as Player, circumstances, ownRandom);
-  }
-  return drawShared({ ...simulated, ends }, performance, players, circumstances, sharedRandom)[place] as TrialOutcome;
-}
-
-/** Draws the players of a study and the results of their trials. */
-class SimulatedRounds {
-  readonly plan: StudyPlan;
-  readonly models: SimulationModels;
-  readonly seed: number;
-  readonly #players: ReadonlyMap<string, Player>;
-  readonly #cohorts: ReturnType<typeof cohortsByParticipant>;
-
-  constructor(plan: StudyPlan, models: SimulationModels, seed: number) {
-    this.plan = plan;
-    this.models = models;
-    this.seed = seed;
-    this.#cohorts = cohortsByParticipant(plan);
-    this.#players = new Map(
-      participantsOf(plan).map((participant) => [
-        participant,
-        drawPlayer(models.performance, randomSource(seed, `player ${participant}`)),
-      ]),
-    );
-  }
-
-  playerOf(participant: string): Player {
-    return this.#players.get(participant) as Player;
-  }
-
-  cohortOf(participant: string): string | null {
-    return this.#cohorts.get(participant)?.id ?? null;
-  }
-
-  /** Returns the result of a trial; participants who play together share a round. */
-  outcomeOf({ participant, groups }: Schedule, step: PlayedStep, run: number, attempt: number): TrialOutcome {
-    const task = this.plan.tasks.find(({ id }) => id === step.task);
-    const group = groups[step.task];
-    if (!task || !group) throw new Error(`the plan has no task "${step.task}"`);
-    const circumstances = {
-      estimator: step.embodiment.estimator,
-      condition: step.kind === 'trial' ? step.condition : null,
-      cohort: this.cohortOf(participant),
-      block: step.block,
-      seconds: step.seconds,
-    };
-    const { members } = group;
-    return drawTrial(task.game, {
-      performance: this.models.performance,
-      circumstances,
-      players: members.map((member) => this.playerOf(member)),
-      place: members.indexOf(participant),
-      ownRandom: randomSource(this.seed, `${participant} ${step.id} ${run} ${attempt}`),
-      sharedRandom: randomSource(this.seed, `${members.join(' ')} ${step.id}`),
-    });
-  }
-}
+const effectUnder = (effects: Readonly<Record<string, number>>, ids: readonly (string | null)[]): number =>
+  ids.reduce((sum, id) => sum + (id === null ? 0 : (effects[id] ?? 0)), 0);
 
 /** Simulates a participant from consent to the end. */
 class SimulatedSession {
-  readonly #rounds: SimulatedRounds;
+  readonly #simulation: Simulation;
   readonly #schedule: Schedule;
   readonly #random: RandomSource;
   /** The constant deviation of this participant's answers. */
@@ -209,12 +139,11 @@ class SimulatedSession {
   /** Seconds since 1970. */
   #now: number;
 
-  constructor(rounds: SimulatedRounds, participant: string, at: number) {
-    const { plan, models, seed } = rounds;
-    this.#rounds = rounds;
-    this.#schedule = scheduleFor(plan, participant);
-    this.#random = randomSource(seed, `session ${participant}`);
-    this.#person = drawPerson(models.answers, randomSource(seed, `person ${participant}`));
+  constructor(simulation: Simulation, participant: string, at: number) {
+    this.#simulation = simulation;
+    this.#schedule = scheduleFor(simulation.plan, participant);
+    this.#random = this.#randomFor(`session ${participant}`);
+    this.#person = drawPerson(this.#randomFor(`person ${participant}`));
     this.#progress = begin(this.#schedule, true);
     this.#now = at;
   }
@@ -247,7 +176,7 @@ class SimulatedSession {
         this.#apply({ type: 'demographics', demographics: drawDemographics(this.#random) });
         break;
       case 'calibration': {
-        const { eyeHeight, armSpan } = this.#rounds.playerOf(this.#schedule.participant);
+        const { eyeHeight, armSpan } = this.#player(this.#schedule.participant);
         this.#apply({ type: 'calibrated', calibration: { eyeHeight, armSpan } });
         break;
       }
@@ -266,7 +195,6 @@ class SimulatedSession {
   }
 
   #play(step: PlayedStep): void {
-    const { mishaps } = this.#rounds.models.performance;
     this.#apply({ type: 'start' });
     if (this.#random.uniform() < mishaps.reload) {
       this.#now += 10;
@@ -274,8 +202,7 @@ class SimulatedSession {
       this.#apply({ type: 'reload' });
       return;
     }
-    const run = this.#progress.runs[`${step.task}/${step.block}`] ?? 1;
-    const outcome = this.#rounds.outcomeOf(this.#schedule, step, run, this.#progress.attempt);
+    const outcome = this.#drawTrial(step);
     this.#now += outcome.seconds;
     this.#apply({ type: 'trial-finished', outcome });
     // The block of a group is voided for all or none; single participants have separate mishaps.
@@ -285,14 +212,45 @@ class SimulatedSession {
     }
   }
 
-  #answer({ condition, block, questionnaire }: QuestionnaireStep): void {
-    const cohort = this.#rounds.cohortOf(this.#schedule.participant);
-    const about = { person: this.#person, condition, cohort, block };
-    const drawn = drawAnswers(this.#rounds.models.answers, questionnaire, about, this.#random);
+  #answer({ condition, questionnaire }: QuestionnaireStep): void {
+    const effect = effectUnder(this.#simulation.effects.answers, [condition, this.#schedule.cohort]);
+    const drawn = drawAnswers(questionnaire, this.#person, effect, this.#random);
     for (const [question, value] of Object.entries(drawn)) {
       this.#now += 4 + Math.round(8 * this.#random.uniform());
       this.#apply({ type: 'answer', question, value });
     }
     this.#apply({ type: 'submit' });
+  }
+
+  /** Draws the result of a trial; participants who play together share a round. */
+  #drawTrial(step: PlayedStep): TrialOutcome {
+    const { plan, effects } = this.#simulation;
+    const { participant, cohort, groups } = this.#schedule;
+    const task = plan.tasks.find(({ id }) => id === step.task) as StudyTask;
+    const { simulated, ends }: GameDescription = games[task.game];
+    const condition = step.kind === 'trial' ? step.condition : null;
+    const circumstances = {
+      estimator: step.embodiment.estimator,
+      effect: effectUnder(effects.scores, [condition, cohort]) + (step.block > 1 ? practiceEffect : 0),
+      seconds: step.seconds,
+    };
+    if ('points' in simulated) {
+      const run = this.#progress.runs[`${step.task}/${step.block}`] ?? 1;
+      const random = this.#randomFor(`${participant} ${step.id} ${run} ${this.#progress.attempt}`);
+      return drawTargets({ ...simulated, ends }, this.#player(participant), circumstances, random);
+    }
+    const members = groups[step.task]?.members ?? [];
+    const players = members.map((member) => this.#player(member));
+    const random = this.#randomFor(`${members.join(' ')} ${step.id}`);
+    const outcomes = drawShared({ ...simulated, ends }, players, circumstances, random);
+    return outcomes[members.indexOf(participant)] as TrialOutcome;
+  }
+
+  #player(participant: string): Player {
+    return drawPlayer(this.#randomFor(`player ${participant}`));
+  }
+
+  #randomFor(purpose: string): RandomSource {
+    return randomSource(this.#simulation.seed, purpose);
   }
 }

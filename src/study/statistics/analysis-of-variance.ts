@@ -1,7 +1,6 @@
 import { fTail, noncentralityOfF } from './noncentral';
 import { type Interval, meanOf, sumOf } from './summaries';
 
-/** One effect of an analysis of variance. */
 export interface Effect {
   /** null if there is no variance to measure the effect with; so are the values that depend on it. */
   readonly f: number | null;

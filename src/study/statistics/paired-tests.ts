@@ -66,7 +66,6 @@ export function equivalenceTest(first: readonly number[], second: readonly numbe
   return { margin, interval: { low: mean - half, high: mean + half }, t, p: oneSidedP(t, df) };
 }
 
-/** Wilcoxon's signed-rank test. */
 export interface SignedRankTest extends RankTest {
   /** The number of pairs that differ; the others are left out. */
   readonly n: number;

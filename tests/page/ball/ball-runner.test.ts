@@ -116,7 +116,7 @@ async function group({ stopped = false } = {}) {
           return finished;
         },
         get interrupted() {
-          return trial?.interrupted ?? false;
+          return trial?.runner.interrupted ?? false;
         },
       };
     }),
@@ -145,16 +145,16 @@ test('a participant who pauses a shared match stops it for the group, and no tim
 }, async () => {
   const { pages, pass, trials } = await group();
   pass(6);
-  expect(trials.map(({ waitingFor }) => waitingFor)).toEqual([null, null, null]);
+  expect(trials.map(({ runner }) => runner.waitingFor)).toEqual([null, null, null]);
   trials[1]?.pause(true);
   pass(1);
-  expect(trials.map(({ standing }) => standing)).toEqual([true, true, true]);
+  expect(trials.map(({ runner }) => runner.pausedByOther)).toEqual([true, true, true]);
   const left = pages.map((page) => page.left());
   pass(20);
   expect(pages.map((page) => page.left())).toEqual(left);
   trials[1]?.pause(false);
   pass(1);
-  expect(trials.map(({ standing }) => standing)).toEqual([false, false, false]);
+  expect(trials.map(({ runner }) => runner.pausedByOther)).toEqual([false, false, false]);
   pass(15);
   const outcomes = pages.map(({ finished }) => finished?.outcome);
   for (const outcome of outcomes) {
@@ -172,7 +172,7 @@ test('a participant who pauses a shared match stops it for the group, and no tim
 test('a participant who paused, reloaded and starts lets the clock of the group go on', async () => {
   const { pages, pass, trials } = await group({ stopped: true });
   pass(3);
-  expect(trials.map(({ standing }) => standing)).toEqual([false, false, false]);
+  expect(trials.map(({ runner }) => runner.pausedByOther)).toEqual([false, false, false]);
   expect(pages.map((page) => page.left() < seconds)).toEqual([true, true, true]);
 });
 

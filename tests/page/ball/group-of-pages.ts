@@ -66,7 +66,7 @@ class GroupPage {
   }
 
   get standing(): boolean {
-    return this.#trial?.standing ?? false;
+    return this.#trial?.runner.pausedByOther ?? false;
   }
 
   get awaited() {
@@ -114,15 +114,15 @@ class GroupPage {
     this.#runner.played();
     if (!this.#trial && time >= this.#startAt) this.#start();
     // The server answers so to a page that asks for its seat.
-    if (this.#trial?.waitingFor && this.othersAreOver()) this.#apply({ type: 'missed' });
+    if (this.#trial?.runner.waitingFor && this.othersAreOver()) this.#apply({ type: 'missed' });
     this.#followTrial(time);
   }
 
   #followTrial(time: number): void {
     const trial = this.#trial;
     if (!trial) return;
-    for (const absence of trial.takeAbsences()) this.#apply({ type: 'absence', absence });
-    if (trial.interrupted) {
+    for (const absence of trial.runner.takeAbsences?.() ?? []) this.#apply({ type: 'absence', absence });
+    if (trial.runner.interrupted) {
       this.#apply({ type: 'reload' });
       trial.abort();
       this.#trial = null;

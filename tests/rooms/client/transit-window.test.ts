@@ -1,16 +1,11 @@
-import { nextRandom } from 'threepoint/math';
+import { createRandom } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { TransitWindow } from '../../../src/rooms/client/transit-window';
 
 test('the transits of the last seconds are ranked as by a sort, packet after packet', () => {
   const window = new TransitWindow(5);
   expect([window.minimum, window.jitter]).toEqual([0, 0]);
-  let random = { seed: 11 };
-  const chance = () => {
-    const { value, state } = nextRandom(random);
-    random = state;
-    return value;
-  };
+  const chance = createRandom(11);
   let known: { readonly at: number; readonly transit: number }[] = [];
   let at = 0;
   for (let i = 0; i < 3000; i++) {

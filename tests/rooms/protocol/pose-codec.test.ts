@@ -13,11 +13,11 @@ import {
 import {
   add,
   angleBetween,
+  createRandom,
   distance,
   fromAxisAngle,
   identity,
   multiply,
-  nextRandom,
   type Quat,
   right,
   vec3,
@@ -33,7 +33,7 @@ import { seed } from '../../threepoint/core/arbitraries';
 import { boneStretch } from '../../threepoint/core/body/bone-stretch';
 import { openShippedModel } from '../../threepoint/core/estimation/shipped-models';
 import { numbersIn } from '../../threepoint/core/numbers-in';
-import { packetOf, pinnedPacketOf, pinnedSenders, type SentPacket, senders } from './sent-bodies';
+import { packetOf, pinnedPacketOf, pinnedSenders, type SentPacket, senders, validPackets } from './sent-bodies';
 
 const degrees = 180 / Math.PI;
 const sides = ['left', 'right'] as const;
@@ -363,23 +363,9 @@ test('bad packets (100,000, or a million at night) decode to null or to a finite
   tags: ['full'],
 }, async () => {
   const packets = isNightly ? 1_000_000 : 100_000;
-  let random = { seed };
-  const chance = (): number => {
-    const next = nextRandom(random);
-    random = next.state;
-    return next.value;
-  };
+  const chance = createRandom(seed);
   const below = (end: number): number => Math.floor(chance() * end);
-  const good: Uint8Array[] = [];
-  for (const sender of fc.sample(senders, { seed, numRuns: 60 })) {
-    const { packet, skeleton: own } = await packetOf(sender);
-    good.push(encodePose(packet, own)!);
-  }
-  for (const pinned of fc.sample(pinnedSenders, { seed, numRuns: 30 })) {
-    const { packet, skeleton: own } = await pinnedPacketOf(pinned);
-    good.push(encodePose(packet, own)!);
-  }
-  good.push(encodePose(handsOnly, skeleton)!);
+  const good = [...(await validPackets(seed, 60, 30)), encodePose(handsOnly, skeleton)!];
   const noise = (length: number): Uint8Array => Uint8Array.from({ length }, () => below(256));
   const bad = (): Uint8Array => {
     const sort = chance();

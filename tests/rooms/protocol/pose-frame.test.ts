@@ -1,30 +1,18 @@
 import fc from 'fast-check';
-import { unknownFingers } from 'threepoint/core';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { maxSeats } from '../../../src/rooms/protocol/messages';
-import { encodePose } from '../../../src/rooms/protocol/pose-codec';
 import { decodeFrame, encodeFrame, type SeatPose } from '../../../src/rooms/protocol/pose-frame';
-import { packetOf, pinnedPacketOf, pinnedSenders, senders } from './sent-bodies';
+import { validPackets } from './sent-bodies';
 
 const seed = 20261122;
 /** Packets of people in any movement, with and without bodies, hands, fingers and trackers. */
-const packets: Uint8Array[] = [];
+let packets: readonly Uint8Array[] = [];
 
 beforeAll(async () => {
-  for (const sender of fc.sample(senders, { seed, numRuns: 120 })) {
-    const { packet, skeleton } = await packetOf(sender);
-    const bodiless = { ...packet, pose: { ...packet.pose, body: null } };
-    for (const sent of [packet, bodiless, { ...bodiless, fingers: unknownFingers }]) {
-      packets.push(encodePose(sent, skeleton)!);
-    }
-  }
-  for (const pinned of fc.sample(pinnedSenders, { seed, numRuns: 30 })) {
-    const { packet, skeleton } = await pinnedPacketOf(pinned);
-    packets.push(encodePose(packet, skeleton)!);
-  }
+  packets = await validPackets(seed, 120, 30);
 });
 
-const onSeats = fc.array(fc.tuple(fc.nat(maxSeats - 1), fc.nat(389)), { minLength: 1, maxLength: 24 });
+const onSeats = fc.array(fc.tuple(fc.nat(maxSeats - 1), fc.nat(449)), { minLength: 1, maxLength: 24 });
 const posesOf = (choices: readonly (readonly [number, number])[]): SeatPose[] =>
   choices.map(([seat, index]) => ({ seat, bytes: packets[index]! })).sort((a, b) => a.seat - b.seat);
 const plain = (poses: readonly SeatPose[] | null) => poses?.map(({ seat, bytes }) => [seat, [...bytes]]);

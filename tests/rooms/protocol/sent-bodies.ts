@@ -9,10 +9,12 @@ import {
   type Skeleton,
   skeletonFromCalibration,
   type TrackingFrame,
+  unknownFingers,
 } from 'threepoint/core';
 import { add, fromAxisAngle, multiply, type TrackedPose, up, vec3 } from 'threepoint/math';
 import { pinning } from 'threepoint/trackers';
 import { packetMs } from '../../../src/rooms/protocol/packet-time';
+import { encodePose } from '../../../src/rooms/protocol/pose-codec';
 import type { PosePacket } from '../../../src/rooms/protocol/pose-packet';
 import { evenly, rotation, standpoint, vector } from '../../threepoint/core/arbitraries';
 import { type Joints, poseOf, showAll } from '../../threepoint/core/estimation/drawn';
@@ -108,6 +110,17 @@ export const packetOf = async (
   create: (calibration: Calibration) => PoseEstimator = (calibration) => createEstimator('ik', calibration),
 ): Promise<SentPacket> => sentPacket(sender, await showAll(create(sender.calibration), framesOf(sender)));
 
+/** Writes the time of its frame [ms] into a pose packet, from its bit 13 on (`writePacket`). */
+export function setTime(bytes: Uint8Array, timeMs: number): void {
+  for (let bit = 0; bit < 14; bit++) {
+    const at = 13 + bit;
+    if (at >> 3 >= bytes.length) return;
+    const mask = 0x80 >> (at & 7);
+    if ((packetMs(timeMs) >> (13 - bit)) & 1) bytes[at >> 3]! |= mask;
+    else bytes[at >> 3]! &= ~mask;
+  }
+}
+
 /** The way from a drawn joint to where its tracker is: a few centimetres aside, and turned. */
 const beside = fc.option(
   fc.record({
@@ -169,4 +182,15 @@ export async function pinnedPacketOf(pinned: PinnedSender): Promise<SentPacket> 
     return isSeen ? { ...frame, trackers: trackersOn(pinnedJoints(pinned, free)) } : frame;
   });
   return sentPacket(sender, await showAll(estimator, frames));
+}
+
+/** Returns the packets of so many people without and with trackers: each whole, without a body, and without fingers. */
+export async function validPackets(seed: number, people: number, pinned: number): Promise<readonly Uint8Array[]> {
+  const sent: SentPacket[] = [];
+  for (const sender of fc.sample(senders, { seed, numRuns: people })) sent.push(await packetOf(sender));
+  for (const sender of fc.sample(pinnedSenders, { seed, numRuns: pinned })) sent.push(await pinnedPacketOf(sender));
+  return sent.flatMap(({ packet, skeleton }) => {
+    const bodiless = { ...packet, pose: { ...packet.pose, body: null } };
+    return [packet, bodiless, { ...bodiless, fingers: unknownFingers }].map((one) => encodePose(one, skeleton)!);
+  });
 }

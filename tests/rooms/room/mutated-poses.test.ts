@@ -1,16 +1,14 @@
-import fc from 'fast-check';
 import { averageSkeleton, type Calibration, forwardKinematics } from 'threepoint/core';
 import { createRandom, distance } from 'threepoint/math';
 import { expect, test } from 'vitest';
-import { packetMs } from '../../../src/rooms/protocol/packet-time';
-import { decodePose, encodePose } from '../../../src/rooms/protocol/pose-codec';
+import { decodePose } from '../../../src/rooms/protocol/pose-codec';
 import { decodeFrame } from '../../../src/rooms/protocol/pose-frame';
 import { maxPosePacketBytes } from '../../../src/rooms/protocol/pose-packet';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
 import { seed } from '../../threepoint/core/arbitraries';
 import { numbersIn } from '../../threepoint/core/numbers-in';
-import { packetOf, pinnedPacketOf, pinnedSenders, senders } from '../protocol/sent-bodies';
+import { setTime, validPackets } from '../protocol/sent-bodies';
 import { createTestRoom } from './test-room';
 
 /** Bodies of the least and greatest measures that a message may carry. */
@@ -37,17 +35,7 @@ function reachOf(bytes: Uint8Array, calibration: Calibration): number {
 /** Valid packets of bodies in all situations, and the ways to change them. */
 async function mutations(chance: () => number) {
   const below = (end: number) => Math.floor(chance() * end);
-  const valid: Uint8Array[] = [];
-  for (const sender of fc.sample(senders, { seed, numRuns: 120 })) {
-    const { packet, skeleton } = await packetOf(sender);
-    for (const body of [packet.pose.body, null]) {
-      valid.push(encodePose({ ...packet, pose: { ...packet.pose, body } }, skeleton)!);
-    }
-  }
-  for (const pinned of fc.sample(pinnedSenders, { seed, numRuns: 60 })) {
-    const { packet, skeleton } = await pinnedPacketOf(pinned);
-    valid.push(encodePose(packet, skeleton)!);
-  }
+  const valid = await validPackets(seed, 120, 60);
   const some = () => Uint8Array.from(valid[below(valid.length)]!);
   const ways: readonly (() => Uint8Array)[] = [
     // A bit to four, anywhere; in the head of the packet, which says how long it is; bytes; cut off; put together from
@@ -66,20 +54,6 @@ async function mutations(chance: () => number) {
     return bytes;
   }
   return { next: () => ways[below(ways.length)]!(), below };
-}
-
-/**
- * Writes a time [ms] into a packet, from its bit 13 on (`writePacket`), so that its age is not what keeps it from
- * the room.
- */
-function setTime(bytes: Uint8Array, timeMs: number): void {
-  for (let bit = 0; bit < 14; bit++) {
-    const at = 13 + bit;
-    if (at >> 3 >= bytes.length) return;
-    const mask = 0x80 >> (at & 7);
-    if ((timeMs >> (13 - bit)) & 1) bytes[at >> 3]! |= mask;
-    else bytes[at >> 3]! &= ~mask;
-  }
 }
 
 test('valid pose packets, changed, reach others whole or not at all, as bodies of finite size', {
@@ -108,7 +82,8 @@ test('valid pose packets, changed, reach others whole or not at all, as bodies o
   };
   for (let i = 0; i < packets; i++) {
     const bytes = next();
-    setTime(bytes, packetMs(testRoom.time * 1000));
+    // Its age is not what keeps a packet from the room.
+    setTime(bytes, testRoom.time * 1000);
     counts[testRoom.send(clients[below(3)]!, bytes)] += 1;
     // Nothing is compared with a pose from more than a second ago: most packets would be leaps otherwise.
     if (i % 3 === 2) testRoom.tick(1.05);

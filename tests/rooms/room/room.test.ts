@@ -259,10 +259,6 @@ describe('a match in a room', () => {
     );
   });
 
-  const readies = (testRoom: ReturnType<typeof createTestRoom>, clients: readonly string[]) => {
-    for (const client of clients) testRoom.say(client, { type: 'ready', ready: true });
-  };
-
   test.each([[[0, 2]], [[1, 2]], [[0, 1, 2]]])(
     'moves roles on so that those on seats %j can play each next one',
     (seats) => {
@@ -272,7 +268,7 @@ describe('a match in a room', () => {
       testRoom.act(clients[0]!, { type: 'rotate', sequence: 1, rotate: true });
       const held: (string | undefined)[] = [];
       for (let match = 0; match < 6; match++) {
-        readies(testRoom, clients);
+        testRoom.ready(clients);
         testRoom.pass(0.2);
         expect(testRoom.room.match.phase).toBe('running');
         held.push(clients[seats.findIndex((seat) => testRoom.room.match.players[seat]?.role === 'holder')]);
@@ -289,14 +285,14 @@ describe('a match in a room', () => {
     testRoom.begin();
     testRoom.pass(1);
     testRoom.say('cal', { type: 'leave' });
-    readies(testRoom, ['ann', 'ben']);
+    testRoom.ready(['ann', 'ben']);
     testRoom.tick();
     testRoom.tick(1 / 120);
     expect(testRoom.room.match.phase).toBe('over');
     testRoom.act('ann', { type: 'rotate', sequence: 1, rotate: true });
     testRoom.join('dot', { seat: 2 });
     testRoom.tick(1 / 600);
-    readies(testRoom, ['ann', 'ben', 'dot']);
+    testRoom.ready(['ann', 'ben', 'dot']);
     testRoom.pass(0.1);
     expect(testRoom.room.match.players.map(({ present }) => present)).toEqual([true, true, true]);
   });

@@ -4,13 +4,12 @@ import { compareCohorts } from '../../../src/study/model/results/compare-cohorts
 import { measuresIn, resultTables } from '../../../src/study/model/results/exported-results';
 import { frameTimes } from '../../../src/study/model/results/frame-times';
 import { answerMeasures } from '../../../src/study/model/results/measures';
-import { modelsWith, simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { rankSumTest, welchTest } from '../../../src/study/statistics/between-tests';
 import { holm } from '../../../src/study/statistics/holm';
 import { meanOf } from '../../../src/study/statistics/summaries';
 import { chicks, plantGrowth } from '../statistics/data-sets';
 import { rowsOf } from './answered';
-import { latencyPlan } from './studies';
+import { latencyPlan, simulatedRecords } from './studies';
 
 describe('two cohorts', () => {
   const ofChicks = answerMeasures(rowsOf(chicks.flat()), (participant) => {
@@ -102,8 +101,8 @@ describe('a mixed study', () => {
       ],
     }),
   );
-  const models = modelsWith(plan, { answers: { men: 1.5 }, scores: {} });
-  const records = simulateStudy(plan, models, 5, 1e9).flatMap((one) => one.records);
+  const effects = { answers: { men: 1.5 }, scores: {} };
+  const records = simulatedRecords(plan, effects);
   const tables = new Map(resultTables(records, plan).map((table) => [table.name, table.rows]));
 
   test('compares its cohorts overall and under each condition, every view a family of its own', () => {

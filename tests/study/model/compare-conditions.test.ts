@@ -2,53 +2,52 @@ import { describe, expect, test } from 'vitest';
 import { ordersByGroup } from '../../../src/study/model/plan/allocation';
 import { questionnairesOf, type StudyTask } from '../../../src/study/model/plan/plan';
 import type { AnswerRow, TrialRow } from '../../../src/study/model/tables/study-tables';
-import {
-  type AnswerModel,
-  answerModelWith,
-  drawAnswers,
-  drawPerson,
-  nullAnswerModel,
-} from '../../../src/study/simulation/answer-model';
+import { drawAnswers, drawPerson } from '../../../src/study/simulation/answer-model';
 import { randomSource } from '../../../src/study/simulation/random-source';
 import { signedRankTest } from '../../../src/study/statistics/paired-tests';
 import { threeRounds } from '../statistics/data-sets';
 import { compareAnswers, compareScores } from './answered';
 import { paperPlan } from './studies';
 
-/** The answers of fifteen participants to all twelve questions, under both conditions in counterbalanced order. */
-function simulatedAnswers(model: AnswerModel, study: number): AnswerRow[] {
+/**
+ * The answers of fifteen participants to all twelve questions, under both conditions in counterbalanced order; `effect`
+ * [points] is that of the paper's condition, on one question or on all.
+ */
+function simulatedAnswers(study: number, effect = 0, only?: string): AnswerRow[] {
   const plan = paperPlan({ seed: study });
   const orders = ordersByGroup(plan, plan.tasks[0] as StudyTask);
   const random = randomSource(study, 'answers');
   return orders.flatMap((order, index) => {
-    const person = drawPerson(model, random);
-    return order.flatMap(({ id: condition }, place) =>
+    const person = drawPerson(random);
+    return order.flatMap(({ id: condition }) =>
       questionnairesOf(plan).flatMap((questionnaire) =>
-        Object.entries(
-          drawAnswers(model, questionnaire, { person, cohort: null, condition, block: place + 1 }, random),
-        ).map(([question, answer]) => ({
-          participant: `P${String(index + 1).padStart(2, '0')}`,
-          simulated: true,
-          task: questionnaire.id,
-          condition,
-          questionnaire: questionnaire.id,
-          question,
-          answer,
-          excluded: '',
-        })),
+        questionnaire.questions.flatMap((question) => {
+          const isAffected = condition === 'paper' && (only === undefined || only === question.id);
+          const asked = { ...questionnaire, questions: [question] };
+          const drawn = drawAnswers(asked, person, isAffected ? effect : 0, random);
+          return {
+            participant: `P${String(index + 1).padStart(2, '0')}`,
+            simulated: true,
+            task: questionnaire.id,
+            condition,
+            questionnaire: questionnaire.id,
+            question: question.id,
+            answer: drawn[question.id] as number,
+            excluded: '',
+          };
+        }),
       ),
     );
   });
 }
 
 describe('an analysis of simulated studies', () => {
-  const findings = (model: AnswerModel, study: number, p: 'holmP' | 'ranksHolmP') =>
-    compareAnswers(simulatedAnswers(model, study)).comparisons.filter((comparison) => (comparison[p] ?? 1) < 0.05)
-      .length;
+  const findings = (study: number, p: 'holmP' | 'ranksHolmP') =>
+    compareAnswers(simulatedAnswers(study)).comparisons.filter((comparison) => (comparison[p] ?? 1) < 0.05).length;
 
   test('finds nothing in at least 95 of 100 studies in which there is nothing', { tags: ['full'] }, () => {
     for (const p of ['holmP', 'ranksHolmP'] as const) {
-      const silent = Array.from({ length: 100 }, (_, study) => findings(nullAnswerModel, study, p)).filter(
+      const silent = Array.from({ length: 100 }, (_, study) => findings(study, p)).filter(
         (found) => found === 0,
       ).length;
       expect(silent, p).toBeGreaterThanOrEqual(95);
@@ -57,7 +56,7 @@ describe('an analysis of simulated studies', () => {
 
   test('finds an effect of 1.5 points in most questions of every study, in its direction', () => {
     for (let study = 0; study < 20; study++) {
-      const { comparisons } = compareAnswers(simulatedAnswers(answerModelWith({ paper: 1.5 }), study));
+      const { comparisons } = compareAnswers(simulatedAnswers(study, 1.5));
       const found = comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05);
       expect(found.length).toBeGreaterThan(6);
       for (const { test: tested } of found) expect(tested?.t).toBeGreaterThan(0);
@@ -65,9 +64,8 @@ describe('an analysis of simulated studies', () => {
   });
 
   test('finds an effect in the one question that has it', () => {
-    const model = { ...nullAnswerModel, effects: { paper: { Q9: 2 } } };
     for (let study = 0; study < 20; study++) {
-      const { comparisons } = compareAnswers(simulatedAnswers(model, study));
+      const { comparisons } = compareAnswers(simulatedAnswers(study, 2, 'Q9'));
       const strongest = comparisons.toSorted((a, b) => (a.test?.p ?? 1) - (b.test?.p ?? 1))[0];
       expect(strongest?.of).toBe('Q9');
       expect(strongest?.holmP).toBeLessThan(0.05);

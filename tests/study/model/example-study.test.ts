@@ -5,11 +5,8 @@ import { resumed } from '../../../src/study/model/progress/progress';
 import { questionKindNames } from '../../../src/study/model/questionnaires/question-kinds';
 import { checkedRecord, type StudyRecord } from '../../../src/study/model/records/study-record';
 import { answersIn, scalesIn, studyTables } from '../../../src/study/model/tables/study-tables';
-import { nullAnswerModel } from '../../../src/study/simulation/answer-model';
-import { statedPerformanceModel } from '../../../src/study/simulation/performance-model';
-import { simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { compareAnswers } from './answered';
-import { examplePlan, paperPlan, planWith, session } from './studies';
+import { completed, examplePlan, paperPlan, planWith, session, simulatedRecords } from './studies';
 
 /** The registered kinds of questions as the messages list them. */
 const kinds = new Intl.ListFormat('en-GB', { type: 'disjunction' }).format(questionKindNames());
@@ -115,8 +112,7 @@ describe('a study with questions of every kind', () => {
 
   test('is compared by question and by scale, what has no number left out', () => {
     const simulated = { ...plan, id: 'example-simulated', participants: 12 };
-    const models = { answers: nullAnswerModel, performance: statedPerformanceModel };
-    const records = simulateStudy(simulated, models, 5, 1e9).flatMap((one) => one.records);
+    const records = simulatedRecords(simulated);
     for (const record of records) checkedRecord(JSON.parse(JSON.stringify(record)), simulated);
     const named = (rows: Parameters<typeof compareAnswers>[0]) =>
       compareAnswers(rows, ['learned', 'hands-only']).comparisons.map(
@@ -142,11 +138,7 @@ describe('a study with questions of every kind', () => {
   test('a question asked after two tasks is two comparisons, each named by its task', () => {
     const [task] = plan.tasks as [StudyPlan['tasks'][number]];
     const twice = checkedPlan({ ...plan, participants: 2, tasks: [task, { ...task, id: 'again', title: 'Again' }] });
-    const records = participantsOf(twice).flatMap((participant) => {
-      const one = session(scheduleFor(twice, participant));
-      one.doUntil(({ kind }) => kind === 'end');
-      return one.records;
-    });
+    const records = participantsOf(twice).flatMap((participant) => completed(participant, { plan: twice }));
     const { comparisons } = compareAnswers(answersIn(records, twice), ['learned', 'hands-only']);
     expect(comparisons.map(({ of }) => of)).toContain('archery/body/mine');
     expect(comparisons.map(({ of }) => of)).toContain('again/body/mine');

@@ -5,15 +5,14 @@ import { remarksOn } from '../../../src/study/model/plan/plan-remarks';
 import { compareConditions } from '../../../src/study/model/results/compare-conditions';
 import { measuresIn, resultTables } from '../../../src/study/model/results/exported-results';
 import { plannedTable } from '../../../src/study/model/tables/plan-tables';
-import { modelsWith, simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { holm } from '../../../src/study/statistics/holm';
 import { equivalenceTest } from '../../../src/study/statistics/paired-tests';
 import { simulatedPower } from '../../../src/study/statistics/power';
-import { paperPlan, planWith, threeBodiesPlan } from './studies';
+import { paperPlan, planWith, simulatedRecords, threeBodiesPlan } from './studies';
 
 const plan = paperPlan();
-const models = modelsWith(plan, { answers: { paper: 0.2 }, scores: {} });
-const records = simulateStudy(plan, models, 3, 1e9).flatMap((one) => one.records);
+const effects = { answers: { paper: 0.2 }, scores: {} };
+const records = simulatedRecords(plan, effects, 3);
 const measures = measuresIn(records, plan);
 const compared = compareConditions(measures.planned, ['paper', 'ik'], plan).comparisons;
 
@@ -112,7 +111,7 @@ describe('the plan of three bodies', () => {
 
   test('tests equivalence only under the conditions of a hypothesis', () => {
     const participants = { ...bodies, participants: 12 };
-    const drawn = simulateStudy(participants, models, 5, 1e9).flatMap((one) => one.records);
+    const drawn = simulatedRecords(participants, effects);
     const { planned } = measuresIn(drawn, participants);
     const claims = (first: string, second: string) =>
       compareConditions(planned, [first, second], bodies).comparisons.map(({ hypothesis, equivalence }) => [

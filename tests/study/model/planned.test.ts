@@ -3,13 +3,12 @@ import { checkedPlan } from '../../../src/study/model/plan/plan';
 import { remarksOn } from '../../../src/study/model/plan/plan-remarks';
 import { compareConditions } from '../../../src/study/model/results/compare-conditions';
 import { measuresIn, overallComparisons, resultTables } from '../../../src/study/model/results/exported-results';
-import { modelsWith, simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { holm } from '../../../src/study/statistics/holm';
-import { examplePlan, latencyPlan } from './studies';
+import { examplePlan, latencyPlan, simulatedRecords } from './studies';
 
 const plan = latencyPlan({ participants: 6 });
 const effects = { answers: { 'late-200': -1 }, scores: {} };
-const records = simulateStudy(plan, modelsWith(plan, effects), 5, 1e9).flatMap((one) => one.records);
+const records = simulatedRecords(plan, effects);
 const measures = measuresIn(records, plan);
 
 test('a plan’s named questions are a family: Holm applies to them alone, whatever else was asked', () => {

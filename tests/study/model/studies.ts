@@ -1,5 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { writeRecording } from 'threepoint/core';
 import { parsePlan, readPlan, type StudyPlan } from '../../../src/study/model/plan/plan';
 import { type Schedule, type StudyStep, scheduleFor } from '../../../src/study/model/plan/schedule';
 import { applyEvent, type ProgressEvent } from '../../../src/study/model/progress/apply-event';
@@ -8,6 +9,7 @@ import type { Answer, AnswerForm } from '../../../src/study/model/questionnaires
 import { questionKind } from '../../../src/study/model/questionnaires/question-kinds';
 import { recordVersion, type StudyRecord } from '../../../src/study/model/records/study-record';
 import { TrialLog, type TrialOutcome } from '../../../src/study/model/records/trial-log';
+import { noEffects, simulateStudy } from '../../../src/study/simulation/simulate-study';
 
 const shippedFile = (name: string): string =>
   readFileSync(fileURLToPath(new URL(`../../../public/studies/${name}.json`, import.meta.url)), 'utf8');
@@ -78,13 +80,33 @@ function answerFor(form: AnswerForm, value: number): Answer {
 export const threeBodiesPlan = (): StudyPlan => parsePlan(shippedFile('three-bodies'), 'three-bodies.json');
 
 /** Returns the records of a complete session; `motion` is the consent to recordings. */
-export function completed(participant = 'P01', { simulated = false, motion = false } = {}): StudyRecord[] {
-  const schedule = scheduleFor(paperPlan(), participant);
+export function completed(
+  participant = 'P01',
+  { plan = paperPlan(), simulated = false, motion = false } = {},
+): StudyRecord[] {
+  const schedule = scheduleFor(plan, participant);
   const one = session(schedule, simulated);
   one.tell({ type: 'consent', version: schedule.consentVersion, motion });
   one.doUntil(({ kind }) => kind === 'end');
   return one.records;
 }
+
+/** A recording of one frame, in which the hands are not seen. */
+export const shortRecording = writeRecording({
+  ...{ device: 'Test headset', rateHz: 72, calibration: null },
+  frames: [
+    {
+      time: 1,
+      head: { position: { x: 0, y: 1.6, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
+      leftHand: null,
+      rightHand: null,
+    },
+  ],
+});
+
+/** Returns the records of a simulated study; the same seed gives the same ones. */
+export const simulatedRecords = (plan: StudyPlan, effects = noEffects, seed = 5): StudyRecord[] =>
+  simulateStudy(plan, effects, seed, 1e9).flatMap(({ records }) => records);
 
 /** Returns the progress of a participant who has only just begun. */
 export const begun = (plan: StudyPlan, participant: string): Progress => begin(scheduleFor(plan, participant));

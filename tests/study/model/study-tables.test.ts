@@ -3,15 +3,9 @@ import { participantsOf } from '../../../src/study/model/plan/plan';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { answersIn, studyTables, trialsIn } from '../../../src/study/model/tables/study-tables';
 import { tidyCsv } from '../../../src/study/model/tables/tidy-csv';
-import { paperPlan, session } from './studies';
+import { completed, paperPlan, session } from './studies';
 
 const plan = paperPlan();
-
-const completed = (participant: string, simulated = false) => {
-  const one = session(scheduleFor(plan, participant), simulated);
-  one.doUntil(({ kind }) => kind === 'end');
-  return one.records;
-};
 
 describe('the tables of a study', () => {
   test('have a row per answer and per trial, for every participant', () => {
@@ -48,10 +42,12 @@ describe('the tables of a study', () => {
   });
 
   test('mark simulated people in every row and never mix them with people', () => {
-    for (const { name, rows } of studyTables(completed('P01', true), plan)) {
+    for (const { name, rows } of studyTables(completed('P01', { simulated: true }), plan)) {
       if (!['conditions', 'planned', 'questions', 'scale-definitions'].includes(name))
         for (const row of rows) expect(row.simulated, name).toBe(true);
     }
-    expect(() => studyTables([...completed('P01', true), ...completed('P02')], plan)).toThrow('must not be mixed');
+    expect(() => studyTables([...completed('P01', { simulated: true }), ...completed('P02')], plan)).toThrow(
+      'must not be mixed',
+    );
   });
 });

@@ -1,6 +1,5 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { checkedRecord, longestRecord } from '../../../src/study/model/records/study-record';
 import {
   checkedOutcome,
@@ -9,7 +8,7 @@ import {
   TrialLog,
 } from '../../../src/study/model/records/trial-log';
 import { number, seed } from '../../threepoint/core/arbitraries';
-import { outcomeOf, paperPlan, session } from './studies';
+import { completed, outcomeOf } from './studies';
 
 const device = { name: 'Test headset', refreshRateHz: 90, input: 'controllers' } as const;
 const end = { seconds: 70, ended: 'time', score: 30, maximum: 50, motionFrames: 0 } as const;
@@ -101,12 +100,7 @@ describe('the log of a trial', () => {
 });
 
 describe('a record', () => {
-  const records = () => {
-    const one = session(scheduleFor(paperPlan(), 'P01'));
-    one.doUntil(({ kind }) => kind === 'end');
-    return one.records;
-  };
-  const ofKind = (kind: string) => records().find((record) => record.kind === kind) as object;
+  const ofKind = (kind: string) => completed().find((record) => record.kind === kind) as object;
 
   test.each<[string, object, string]>([
     ['consent', { body: { version: 'v', given: false, motion: false, at: 1 } }, 'body.given: nothing is recorded'],

@@ -3,16 +3,13 @@ import { checkedPlan, type StudyTask } from '../../../src/study/model/plan/plan'
 import { compareConditions } from '../../../src/study/model/results/compare-conditions';
 import { scaleCharts } from '../../../src/study/pages/results/comparison-figures';
 import { shownResults } from '../../../src/study/pages/results/shown-results';
-import { modelsWith, simulateStudy } from '../../../src/study/simulation/simulate-study';
-import { latencyPlan } from '../model/studies';
+import { latencyPlan, simulatedRecords } from '../model/studies';
 
 test('two tasks with like questions stand side by side in a figure, each with its id', () => {
   const [task] = latencyPlan().tasks as [StudyTask];
   const { planned: _, ...unplanned } = latencyPlan({ participants: 6, tasks: [task, { ...task, id: 'archery-far' }] });
   const plan = checkedPlan(unplanned);
-  const records = simulateStudy(plan, modelsWith(plan, { answers: {}, scores: {} }), 5, 1e9).flatMap(
-    (one) => one.records,
-  );
+  const records = simulatedRecords(plan);
   const results = shownResults({ plan, simulated: true, records });
   const { scales, points } = results.measures;
   const compared = (measures: typeof scales) => compareConditions(measures, ['late-200', 'late-0'], plan).comparisons;

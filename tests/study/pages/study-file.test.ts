@@ -6,25 +6,12 @@ import { tidyCsv } from '../../../src/study/model/tables/tidy-csv';
 import { shownResults } from '../../../src/study/pages/results/shown-results';
 import { openStudyFile } from '../../../src/study/pages/study-file';
 import { exportZip } from '../../../src/study/server/export/export-zip';
-import { nullAnswerModel } from '../../../src/study/simulation/answer-model';
-import { statedPerformanceModel } from '../../../src/study/simulation/performance-model';
-import { simulatedPlan, simulateStudy } from '../../../src/study/simulation/simulate-study';
 import { compareAnswers } from '../model/answered';
 import { paperPlan } from '../model/studies';
-import { testSoftware } from '../server/running-studies';
+import { exportedStudy } from '../server/export/exported-studies';
 
-const plan = simulatedPlan(paperPlan());
-const models = { answers: nullAnswerModel, performance: statedPerformanceModel };
-const records = simulateStudy(plan, models, 1, 1e9).flatMap((one) => one.records);
-const content = {
-  plan,
-  simulated: true,
-  records,
-  motion: [],
-  at: 1e9,
-  retentionUntil: null,
-  software: testSoftware,
-};
+const content = exportedStudy(paperPlan());
+const { plan, records } = content;
 const exported = exportZip(content);
 
 test('an export opens again as what was exported, its mark of simulation included', () => {

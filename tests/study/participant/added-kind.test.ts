@@ -18,10 +18,7 @@ import type { QuestionView } from '../../../src/study/participant/questions/ques
 import { questionView, registerQuestionView } from '../../../src/study/participant/questions/question-views';
 import { questionPart } from '../../../src/study/participant/screens/question-screen';
 import type { ShownSession } from '../../../src/study/participant/screens/study-situation';
-import { nullAnswerModel } from '../../../src/study/simulation/answer-model';
-import { statedPerformanceModel } from '../../../src/study/simulation/performance-model';
-import { simulateStudy } from '../../../src/study/simulation/simulate-study';
-import { paperPlan, session } from '../model/studies';
+import { paperPlan, session, simulatedRecords } from '../model/studies';
 import agreement from '../question-kinds/agreement.mjs';
 
 // A laboratory adds a kind of question from outside the package: agreement, which is 1 or 0.
@@ -150,8 +147,7 @@ describe('a kind of question that is registered from outside', () => {
   });
 
   test('is simulated, tabulated, scored and compared', () => {
-    const models = { answers: nullAnswerModel, performance: statedPerformanceModel };
-    const records = simulateStudy(plan(), models, 7, 1_800_000_000).flatMap((one) => one.records);
+    const records = simulatedRecords(plan());
     const questions = studyTables(records, plan()).find(({ name }) => name === 'questions');
     expect(questions?.rows[0]).toMatchObject({ kind: 'agreement', answers: '1: I agree; 0: I disagree' });
     expect(questions?.columns.find(({ name }) => name === 'kind')?.values).toContain('agreement');

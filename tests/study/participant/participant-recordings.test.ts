@@ -1,32 +1,23 @@
 import { request as httpRequest } from 'node:http';
-import { type TrackingFrame, writeRecording } from 'threepoint/core';
 import { expect, test } from 'vitest';
 import { unpacked } from '../../../src/study/server/study-storage';
 import { answeringHost } from '../../rooms/client/answering-host';
-import { calibration, device, toTheFirstQuestion } from './participant-device';
+import { shortRecording } from '../model/studies';
+import { device, toTheFirstQuestion } from './participant-device';
 import { place, type StudyServer, studyServer } from './study-server';
-
-const upright = { orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' } as const;
-const frame: TrackingFrame = {
-  time: 1,
-  head: { position: { x: 0, y: 1.6, z: 0 }, ...upright },
-  leftHand: null,
-  rightHand: null,
-};
-const recording = writeRecording({ device: 'Test headset', rateHz: 72, calibration, frames: [frame] });
 
 test('tracked frames reach the server with consent to them, and leave the device then', async () => {
   const server = await studyServer();
   const { store } = server;
   const { first, vault } = await device(server);
   toTheFirstQuestion(first, true);
-  first.keepMotion('archery/1/trial-1@1.1:trial', recording);
+  first.keepMotion('archery/1/trial-1@1.1:trial', shortRecording);
   await first.settled();
   expect(await vault.motion(place)).toHaveLength(1);
   await first.exchange();
   await first.motionSent();
   expect(store.motion.all('paper').map(unpacked)).toEqual([
-    { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
+    { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: shortRecording },
   ]);
   expect(await vault.motion(place)).toEqual([]);
 });
@@ -37,7 +28,7 @@ test('a recording that the server refuses is reported and kept, and blocks nothi
   const { first, vault } = await device(server);
   toTheFirstQuestion(first, true);
   first.keepMotion('archery/1/trial-1@1.1:trial', 'no recording');
-  first.keepMotion('archery/2/trial-1@1.1:trial', recording);
+  first.keepMotion('archery/2/trial-1@1.1:trial', shortRecording);
   await first.exchange();
   await first.motionSent();
   expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
@@ -97,7 +88,7 @@ test('while a recording is on its way, progress is reported and commands are fol
   const way = await wayWithoutMotion(server);
   const { first } = await device({ ...way, invitation: server.invitation });
   toTheFirstQuestion(first, true);
-  first.keepMotion('archery/1/trial-1@1.1:trial', recording);
+  first.keepMotion('archery/1/trial-1@1.1:trial', shortRecording);
   await first.exchange();
   expect(store.places.progress('paper', 'P01')?.step).toBe(first.step.id);
   await experimenter.command('paper', 'P01', { type: 'pause' });

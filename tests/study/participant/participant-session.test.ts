@@ -160,24 +160,6 @@ test.each([-600, 600])('a rest lasts as long on a second device whose clock is %
   expect(second.remaining()).toBeLessThan(60);
 });
 
-test('a session that an older page kept follows no command again', async () => {
-  const server = await studyServer();
-  const { first, vault, reload } = await device(server);
-  toTheFirstQuestion(first);
-  await server.experimenter.command('paper', 'P01', { type: 'pause' });
-  await first.exchange();
-  first.apply({ type: 'resume' });
-  await first.settled();
-  const kept = await vault.session(place);
-  const { commandsSeen, ...progress } = first.progress;
-  expect(commandsSeen).toBeGreaterThan(0);
-  // The number was stored here before it was part of the progress.
-  await vault.save({ ...kept, progress, commandsSeen } as never, []);
-  const second = await reload();
-  await second.exchange();
-  expect(second.progress.paused).toBe(false);
-});
-
 test('a record that the server refuses is reported and kept, and does not block others', async () => {
   const server = await studyServer();
   const { store } = server;

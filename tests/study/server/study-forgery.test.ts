@@ -1,21 +1,17 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { describe, expect, test } from 'vitest';
 import { csvRows } from '../../../src/study/cli/verify/csv-rows';
-import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
-import { paperPlan, session } from '../model/studies';
+import { completed } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';
 
-const plan = paperPlan();
 const own = (rest: string) => `/api/studies/paper/participants/P01/${rest}`;
 
 /** P01 with the records of a whole session, of which only the consent is sent; the clocks of page and server agree. */
 async function participant() {
   const server = await servedPaperStudy();
   const token = await server.claim('P01');
-  const one = session(scheduleFor(plan, 'P01'));
-  one.doUntil(({ kind }) => kind === 'end');
-  const records: StudyRecord[] = one.records.map((record) => ({ ...record, at: now }));
+  const records: StudyRecord[] = completed().map((record) => ({ ...record, at: now }));
   const send = (sent: readonly unknown[], as = token) =>
     server.ask('POST', own('records'), { token: as, json: { records: sent } });
   expect((await send(records.slice(0, 1))).status).toBe(200);

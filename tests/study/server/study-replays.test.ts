@@ -1,32 +1,14 @@
-import { writeRecording } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { begin, type Progress } from '../../../src/study/model/progress/progress';
 import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { reportFigures } from '../../reliability/report-figures';
-import { completed, paperPlan, session } from '../model/studies';
+import { completed, paperPlan, session, shortRecording } from '../model/studies';
 import { experimenter, now, servedPaperStudy } from './running-studies';
 import { asSent } from './stored-studies';
 
 const place = '/api/studies/paper/participants/P01';
 const schedule = scheduleFor(paperPlan(), 'P01');
-const recording = writeRecording({
-  device: 'Test headset',
-  rateHz: 72,
-  calibration: { eyeHeight: 1.6, armSpan: 1.5 },
-  frames: [
-    {
-      time: 1,
-      head: {
-        position: { x: 0, y: 1.6, z: 0 },
-        orientation: { x: 0, y: 0, z: 0, w: 1 },
-        tracking: 'tracked',
-      },
-      leftHand: null,
-      rightHand: null,
-    },
-  ],
-});
 
 /** P01 on their device: what its page sends. */
 async function participant() {
@@ -38,7 +20,7 @@ async function participant() {
     send: (records: readonly unknown[]) => served.ask('POST', `${place}/records`, { token, json: { records } }),
     report: (progress: unknown) => served.ask('PUT', `${place}/progress`, { token, json: progress }),
     sendMotion: async () =>
-      (await served.ask('PUT', `${place}/motion?trial=archery/1/trial-1`, { raw: { headers, body: recording } }))
+      (await served.ask('PUT', `${place}/motion?trial=archery/1/trial-1`, { raw: { headers, body: shortRecording } }))
         .status,
   };
 }

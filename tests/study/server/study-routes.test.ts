@@ -1,18 +1,11 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { describe, expect, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
-import type { StudyRecord } from '../../../src/study/model/records/study-record';
 import { bodyLimits } from '../../../src/study/server/routes/route';
 import { reportFigures } from '../../reliability/report-figures';
-import { begun, consentAt, paperPlan, session } from '../model/studies';
+import { begun, completed, consentAt, paperPlan } from '../model/studies';
 import { experimenter, now, servedPaperStudy, servedStudies } from './running-studies';
 import { asSent } from './stored-studies';
-
-function completed(participant: string): StudyRecord[] {
-  const one = session(scheduleFor(paperPlan(), participant));
-  one.doUntil(({ kind }) => kind === 'end');
-  return one.records;
-}
 
 const own = (participant: string, rest = '') => `/api/studies/paper/participants/${participant}${rest}`;
 

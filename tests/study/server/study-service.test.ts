@@ -25,22 +25,6 @@ test('the first start draws a token readable by its owner alone; the next keeps 
   expect((await fetch(`${second.origin}/anything`)).status).toBe(404);
 });
 
-test('an expired study is deleted when the server starts, and the log says so', async () => {
-  const directory = directoryWith();
-  const first = await servedFolder(directory);
-  const post = (path: string, body: unknown) =>
-    fetch(`${first.origin}/api/studies${path}`, {
-      method: 'POST',
-      headers: { authorization: `Bearer ${experimenter}`, 'content-type': 'application/json' },
-      body: JSON.stringify(body),
-    });
-  expect((await post('', { plan: paperPlan(), simulated: false })).status).toBe(201);
-  expect((await post('/paper/participants/P01/claim', {})).status).toBe(201);
-  await first.stop();
-  const { lines } = await servedFolder(directory, experimenter, 1e9 + 366 * day);
-  expect(lines).toEqual(['study "paper": P01 is past the retention date, 0 records deleted']);
-});
-
 /** Returns a directory with a study that P01 and P02 have begun. */
 function begunStudy() {
   const directory = directoryWith();

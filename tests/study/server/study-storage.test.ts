@@ -108,16 +108,6 @@ describe.each(adapters)('a storage in $adapter', ({ open }) => {
       expect((await store.places.progress('paper', 'P01'))?.elapsed).toBeCloseTo(20, 6);
     });
 
-    test('still opens progress with the start of the device’s clock, as older pages stored', async () => {
-      const store = await withPaperStudy();
-      const one = session(scheduleFor(paperPlan(), 'P01'));
-      one.doUntil(({ kind }) => kind === 'rest');
-      await store.records.store('paper', 'P01', one.records, now);
-      await store.places.saveProgress('paper', 'P01', one.progress, one.now);
-      expect((await store.overview('paper', one.now + 15))[0]?.session?.remainingSeconds).toBeCloseTo(45, 6);
-      expect(await store.places.progress('paper', 'P01', one.now + 15)).toEqual(one.progress);
-    });
-
     test('hands on commands in order, each once', async () => {
       const store = await withPaperStudy();
       const first = await store.commands.add('paper', 'P01', { type: 'pause' }, now);

@@ -1,7 +1,7 @@
 import { copyFileSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, onTestFinished, test } from 'vitest';
 import { directoryWith } from '../../temporary-directory';
 import { completed } from '../model/studies';
 import { now } from './running-studies';
@@ -15,14 +15,6 @@ describe('a file of SQLite', () => {
       .join();
   };
 
-  test('gives back what it was given, after being closed and opened', () => {
-    const { store, file } = withPaperStudy();
-    const records = completed();
-    expect(store.records.store('paper', 'P01', records, now)).toEqual(records.map(({ id }) => id));
-    store.close();
-    expect(opened(file).store.records.all('paper', 'P01').map(asSent)).toEqual(records);
-  });
-
   test('has its log beside it (WAL)', () => {
     const { file } = withPaperStudy();
     expect(new DatabaseSync(file).prepare('PRAGMA journal_mode').get()).toMatchObject({ journal_mode: 'wal' });
@@ -31,7 +23,7 @@ describe('a file of SQLite', () => {
   test('once closed, is whole in the one file: a copy of it alone has everything', () => {
     const { store, file } = withPaperStudy();
     const records = completed();
-    store.records.store('paper', 'P01', records, now);
+    expect(store.records.store('paper', 'P01', records, now)).toEqual(records.map(({ id }) => id));
     store.close();
     const copy = join(directoryWith(), 'copy.db');
     copyFileSync(file, copy);
@@ -68,5 +60,23 @@ describe('a file of SQLite', () => {
     expect(store.deletion.receipts('paper')).toEqual([receipt]);
     expect(bytesOf(file)).not.toContain('conspicuous hat');
     expect(bytesOf(file)).not.toContain('Computer science');
+  });
+
+  test('has bytes of a deleted participant in its log only while another program reads it', () => {
+    const { store, file } = withPaperStudy();
+    const { withdrawalCode } = store.places.claim('paper', 'P01', now);
+    store.records.store('paper', 'P01', completed(), now);
+    store.records.addRemark('paper', 'P01', 'wore a conspicuous hat', now);
+    const reader = new DatabaseSync(file);
+    onTestFinished(() => reader.close());
+    reader.exec('BEGIN; SELECT count(*) FROM records');
+    store.deletion.withdraw('paper', withdrawalCode as string, now);
+    expect(store.purgeDeleted()).toBe(false);
+    expect(bytesOf(file)).toContain('conspicuous hat');
+    reader.exec('COMMIT');
+    expect(store.purgeDeleted()).toBe(true);
+    expect(bytesOf(file)).not.toContain('conspicuous hat');
+    store.close();
+    expect(bytesOf(file)).not.toContain('conspicuous hat');
   });
 });

@@ -82,7 +82,6 @@ function checksumProblems(files: Files): readonly string[] {
 
 const quoted = (cell: string | undefined): string => (cell === undefined ? 'nothing' : `"${cell}"`);
 
-/** Compares two tables cell by cell. */
 function cellProblems(path: string, found: string, computed: string): readonly string[] {
   const [theirs, ours] = [csvRows(found), csvRows(computed)];
   const [heads = []] = ours;

@@ -291,7 +291,6 @@ export const english = {
   'receipt.save': 'Save the receipt',
 } as const;
 
-/** The key of a phrase of the page. */
 export type PhraseKey = keyof typeof english;
 
 /** The forms of a phrase with a number, by the names of Unicode's plural rules. */

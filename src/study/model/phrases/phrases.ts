@@ -50,7 +50,6 @@ export function preferredLanguage(offered: readonly [string, ...string[]], wante
 
 /** The phrases of the page in one language. */
 export class Phrases {
-  /** The language of the participant. */
   readonly language: string;
   /** The language of the phrases: English if the page has none in the participant's language. */
   readonly locale: string;
@@ -98,7 +97,6 @@ export interface LanguageOptions {
   readonly phrases?: Readonly<Record<string, GivenPhrases>>;
 }
 
-/** Returns the phrases of a study for readers of this language. */
 export const phrasesOf = ({ phrases = {} }: LanguageOptions, language: string): Phrases =>
   new Phrases(language, Object.hasOwn(phrases, language) ? phrases[language] : {});
 

@@ -8,7 +8,6 @@ import {
 } from './plan';
 import { randomFor, shuffle } from './shuffle';
 
-/** Returns every order of the items. */
 function permutations<T>(items: readonly T[]): readonly (readonly T[])[] {
   if (items.length < 2) return [items];
   return items.flatMap((first, index) =>

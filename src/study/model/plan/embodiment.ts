@@ -1,16 +1,13 @@
 import { builtInBodies, maxLatencyMs, numberBetween, type ThreePointName, threePointNames } from 'threepoint/core';
 import * as v from 'valibot';
 
-/** An estimator by its name in plans. */
 export const estimatorSchema = v.picklist(threePointNames, `expected one of ${threePointNames.join(', ')}`);
 
 const trueOrFalse = v.boolean('expected true or false');
 
 /** The properties of a body that a condition or a cohort may set. */
 export const embodimentFields = {
-  /** The estimator of the body. */
   estimator: v.exactOptional(estimatorSchema),
-  /** The avatar, one of those of this project. */
   avatar: v.exactOptional(v.picklist(builtInBodies, `expected one of ${builtInBodies.join(', ')}`)),
   /** Whether there is a mirror; a game may have none. */
   mirror: v.exactOptional(trueOrFalse),
@@ -34,7 +31,6 @@ export type PartialEmbodiment = v.InferOutput<v.StrictObjectSchema<typeof embodi
 /** The body of a participant in a round. */
 export type Embodiment = PartialEmbodiment & { readonly estimator: ThreePointName };
 
-/** Returns the properties that are set. */
 export const embodimentFieldsOf = (properties: PartialEmbodiment): readonly (keyof PartialEmbodiment)[] =>
   fields.filter((field) => properties[field] !== undefined);
 

@@ -7,7 +7,6 @@ export const hypothesisSchema = v.strictObject({
   /** The name in tables of results: "H1". */
   id: code,
   text: text(300),
-  /** The ids of the compared conditions. */
   conditions: v.strictTuple([identifier, identifier], 'expected the ids of two conditions'),
   /** The measures that decide: "archery/archery/Q6", "ball/score". */
   measures: v.pipe(

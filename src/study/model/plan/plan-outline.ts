@@ -4,7 +4,6 @@ import type { Question } from '../questionnaires/questionnaire-schema';
 import { languagesOf, type StudyPlan, taskTitle } from './plan';
 import { blindLabel, type StudyStep, scheduleFor } from './schedule';
 
-/** A screen of a participant. */
 export interface OutlinedScreen {
   /** The step of the schedule: "archery/1/questionnaire". */
   readonly step: string;

@@ -6,7 +6,6 @@ import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from '.
 import { plannedMeasures } from './hypotheses';
 import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
 
-/** Returns the number of participants in each cohort, by its id. */
 export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
   const counts = new Map((plan.cohorts ?? []).map(({ id }) => [id, 0]));
   for (const { id } of cohortsByParticipant(plan).values()) counts.set(id, (counts.get(id) ?? 0) + 1);
@@ -48,7 +47,6 @@ const evenParticipants = ({ tasks, cohorts, ...plan }: StudyPlan, { groupSize }:
 
 const timesText = (count: number) => (count === 0 ? 'never' : count === 1 ? 'once' : `${count} times`);
 
-/** Returns remarks about unbalanced cohorts and orders. */
 function balanceRemarks(plan: StudyPlan): readonly string[] {
   const remarks: string[] = [];
   const sizes = cohortCounts(plan);

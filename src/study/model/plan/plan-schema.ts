@@ -30,12 +30,10 @@ const taskSchema = v.strictObject({
   groupSize: integerBetween(1, 6),
   /** The number of trials in a block, all under its condition. */
   repetitions: integerBetween(1, 20),
-  /** The time limit of a trial [s]. */
   trialSeconds: numberBetween(1, 3600),
   /** What a match of a group does when a participant is away; absent: see `absenceRuleOf`. */
   absence: v.exactOptional(
     v.strictObject({
-      /** For how long the match waits [s]. */
       waitSeconds: numberBetween(5, 1800),
       /** repeat: the match is void for all and played again; end: it ends, and its trials are not counted. */
       after: v.picklist(['repeat', 'end'], 'expected repeat or end'),

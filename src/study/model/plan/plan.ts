@@ -27,7 +27,6 @@ const maxOrdersListed = 4;
 /** The properties that all conditions set if one does, because the default of the page depends on the headset. */
 const setByAllOrNone = ['estimator', 'avatar', 'mirror', 'upperBodyOnly'] as const;
 
-/** Returns the size of the largest group. */
 export const largestGroup = ({ tasks }: Pick<StudyPlan, 'tasks'>): number =>
   Math.max(...tasks.map(({ groupSize }) => groupSize));
 

@@ -17,7 +17,6 @@ export type DeviceProblem =
   | { readonly kind: 'insecure' | 'no-webxr' | 'no-headset' }
   | { readonly kind: 'refused'; readonly reason: string };
 
-/** The set-up of a participant who is about to begin. */
 export interface RemoteSetup {
   /** null: the device can be used. */
   readonly deviceProblem: DeviceProblem | null;

@@ -21,7 +21,6 @@ interface BlockStep {
   readonly block: number;
 }
 
-/** A step of a participant. */
 export type StudyStep =
   | StepOf<'consent'>
   | StepOf<'demographics'>
@@ -40,7 +39,6 @@ export type StudyStep =
       BlockStep & { readonly condition: string; readonly questionnaire: Questionnaire; readonly seconds: number })
   | StepOf<'end'>;
 
-/** The steps that are played. */
 export type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
 
 export const isPlayed = (step: StudyStep): step is PlayedStep => step.kind === 'trial' || step.kind === 'tutorial';
@@ -49,10 +47,8 @@ export const isPlayed = (step: StudyStep): step is PlayedStep => step.kind === '
 export interface Schedule {
   readonly study: string;
   readonly participant: string;
-  /** null: the plan has none. */
   readonly cohort: string | null;
   readonly consentVersion: string;
-  /** The stopping rules of the plan. */
   readonly askToStop: readonly StoppingRule[];
   /** The group of each task: its members and its number from 1 (for tasks alone: the participant's). */
   readonly groups: Readonly<Record<string, { readonly number: number; readonly members: readonly string[] }>>;

@@ -22,9 +22,7 @@ export type ProgressEvent =
   | { readonly type: 'trial-finished'; readonly outcome: TrialOutcome }
   /** null removes the answer. */
   | { readonly type: 'answer'; readonly question: string; readonly value: Answer | null }
-  /** Hands the questionnaire in. */
   | { readonly type: 'submit' }
-  /** Lets time pass. */
   | { readonly type: 'tick' }
   /** `by`: absent: the participant. */
   | { readonly type: 'pause'; readonly by?: 'experimenter' }
@@ -50,7 +48,6 @@ export type ProgressEvent =
    */
   | { readonly type: 'reload' };
 
-/** The result of an event. */
 export interface EventResult {
   readonly progress: Progress;
   /** The records to store and send, in this order. */
@@ -96,7 +93,7 @@ export function applyEvent(schedule: Schedule, progress: Progress, event: Progre
       (handlers[event.type] as Handler)(session, event) ??
       session.reject(`"${event.type}" does not fit the step "${session.step.id}"`);
     if (next.progress === progress) return next;
-    return { ...next, progress: { ...next.progress, changes: (progress.changes ?? 0) + 1 } };
+    return { ...next, progress: { ...next.progress, changes: progress.changes + 1 } };
   } catch (error) {
     if (!(error instanceof ValidationError)) throw error;
     return session.reject(error.message);
@@ -148,7 +145,6 @@ class SessionAtEvent {
     return this.accept(counted, [{ ...this.recordFields, kind: 'event', id: `event-${counted.events}`, body }]);
   }
 
-  /** Returns the session at the next step. */
   moveOn(from: Progress, records: readonly StudyRecord[] = []): EventResult {
     const { steps } = this.schedule;
     const next = steps.slice(steps.indexOf(this.step) + 1).find((step) => !isFinishedPractice(step, from));
@@ -166,10 +162,11 @@ class SessionAtEvent {
    * Returns the session at the start of a step. Clocks of rests and questionnaires start at once, games and calibration
    * wait for a start.
    */
-  atStep({ waiting: _, voided: __, ...from }: Progress, step: StudyStep): Progress {
+  atStep(from: Progress, step: StudyStep): Progress {
     const running = step.kind === 'rest' || step.kind === 'questionnaire';
     const since = running && !from.paused ? this.now : null;
-    return { ...from, step: step.id, running, since, elapsed: 0, draft: {}, attempt: 1 };
+    const fresh = { waiting: false, voided: false, elapsed: 0, draft: {}, attempt: 1 };
+    return { ...from, ...fresh, step: step.id, running, since };
   }
 }
 
@@ -179,7 +176,7 @@ const isPractice = (step: StudyStep): boolean =>
   step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('/rest-after-tutorial'));
 
 /** Returns whether a step is the practice of a repeated block in which it was finished before. */
-const isFinishedPractice = (step: StudyStep, { practised = [] }: Progress): boolean =>
+const isFinishedPractice = (step: StudyStep, { practised }: Progress): boolean =>
   'task' in step && isPractice(step) && practised.includes(blockKey(step));
 
 function consent(session: SessionAtEvent, { version, motion, language }: EventOf<'consent'>): EventResult | null {
@@ -280,11 +277,10 @@ function tick(session: SessionAtEvent): EventResult {
 }
 
 function matchClock(session: SessionAtEvent, { runs, second }: EventOf<'match-clock'>): EventResult | null {
-  const { step, now } = session;
-  const { waiting: _, ...progress } = session.progress;
+  const { step, now, progress } = session;
   if (!isPlayed(step) || !progress.running) return null;
   const since = runs && !progress.paused ? now : null;
-  return session.accept({ ...progress, ...(!runs && { waiting: true }), since, elapsed: second });
+  return session.accept({ ...progress, waiting: !runs, since, elapsed: second });
 }
 
 function absence(session: SessionAtEvent, event: EventOf<'absence'>): EventResult | null {
@@ -311,10 +307,9 @@ function stop(session: SessionAtEvent, { by, reason }: EventOf<'stop'>): EventRe
   const { step, place, progress, schedule } = session;
   if (step.kind === 'end') return null;
   if (progress.motion === null) return session.reject('nothing is recorded before consent');
-  const { unwell: _, ...decided } = progress;
   const stated = reason === undefined ? {} : { reason: checked(text(500), reason) };
   const recorded = session.withEvent(
-    { ...decided, stopped: true, paused: false },
+    { ...progress, unwell: false, stopped: true, paused: false },
     { type: 'stop', by, ...stated, place, step: step.id },
   );
   return session.accept(session.atStep(recorded.progress, schedule.steps.at(-1) as StudyStep), recorded.records);
@@ -325,8 +320,8 @@ function stop(session: SessionAtEvent, { by, reason }: EventOf<'stop'>): EventRe
  * shown before. The clock of a rest has run in the meantime.
  */
 function goOn(session: SessionAtEvent): EventResult | null {
-  const { unwell, ...decided } = session.progress;
-  if (!unwell) return null;
+  if (!session.progress.unwell) return null;
+  const decided = { ...session.progress, unwell: false };
   const begins = session.step.kind === 'questionnaire' ? session.atStep(decided, session.step) : decided;
   return session.withEvent(begins, { type: 'go-on' });
 }
@@ -348,17 +343,16 @@ function voidBlock(session: SessionAtEvent, event: EventOf<'void-block'>): Event
     return session.reject(`block ${of.block} of "${of.task}", which the command is for, is not under way`);
   }
   const { steps } = session.schedule;
-  const { runs } = session.progress;
+  const { runs, practised } = session.progress;
   const reason = checked(text(500), event.reason);
   const ofBlock = (step: StudyStep) => 'task' in step && step.task === task && step.block === block;
-  const { practised = [] } = session.progress;
   const isPastPractice = steps.findLastIndex((step) => ofBlock(step) && isPractice(step)) < steps.indexOf(session.step);
-  const finished = repeat && isPastPractice ? { practised: [...new Set([...practised, blockKey(session.place)])] } : {};
+  const key = blockKey(session.place);
   const next = {
     ...session.progress,
-    runs: repeat ? { ...runs, [blockKey(session.place)]: run + 1 } : runs,
+    runs: repeat ? { ...runs, [key]: run + 1 } : runs,
+    practised: repeat && isPastPractice ? [...new Set([...practised, key])] : practised,
     paused: false,
-    ...finished,
   };
   const isSkipped = (step: StudyStep) => isFinishedPractice(step, next);
   const target = (
@@ -383,8 +377,8 @@ function reload(session: SessionAtEvent): EventResult {
   if (!isPlayed(step) || !progress.running || !place) {
     return session.withEvent(runningOn(progress, session.now), { type: 'reload' });
   }
-  const { waiting: _, ...rest } = progress;
-  const again = { ...rest, running: false, since: null, elapsed: 0, attempt: progress.attempt + 1 };
+  const attempt = progress.attempt + 1;
+  const again = { ...progress, waiting: false, running: false, since: null, elapsed: 0, attempt };
   return session.withEvent(again, { type: 'interrupted', place, step: step.id });
 }
 

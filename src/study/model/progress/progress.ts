@@ -24,7 +24,6 @@ const progressSchema = v.object({
   study: identifier,
   participant: participantId,
   simulated: v.boolean(),
-  /** The id of the present step. */
   step: text(120),
   /** Whether the clock of the step was started. */
   running: v.boolean(),
@@ -41,26 +40,20 @@ const progressSchema = v.object({
   language: v.exactOptional(languageTag),
   /** The run of a block by "task/block", if it is not the first. */
   runs: v.record(v.string(), integerBetween(1, 1000)),
-  /** Whether the participant is asked, because of answers, whether to stop; absent: not. */
-  unwell: v.exactOptional(v.boolean()),
-  /** The repeated blocks, "task/block", whose practice was finished before they were voided; absent: none. */
-  practised: v.exactOptional(v.array(text(120))),
-  /** Whether the match of a started trial has not begun or stands, and with it the clock; absent: not. */
-  waiting: v.exactOptional(v.boolean()),
-  /** Whether a void block led to this step, which its sheet states; absent: not. */
-  voided: v.exactOptional(v.boolean()),
-  /** Whether the participant stopped, or was stopped, before the end; absent: not. */
-  stopped: v.exactOptional(v.boolean()),
-  /**
-   * The number of the newest command of the experimenter that was followed; absent: none, or the report of an older
-   * program.
-   */
-  commandsSeen: v.exactOptional(integerBetween(0, Number.MAX_SAFE_INTEGER)),
-  /**
-   * The number of changes of this session, by which states are ordered; absent: none, or the report of an older
-   * program.
-   */
-  changes: v.exactOptional(integerBetween(0, Number.MAX_SAFE_INTEGER)),
+  /** Whether the participant is asked, because of answers, whether to stop. */
+  unwell: v.boolean(),
+  /** The repeated blocks, "task/block", whose practice was finished before they were voided. */
+  practised: v.array(text(120)),
+  /** Whether the match of a started trial has not begun or stands, and with it the clock. */
+  waiting: v.boolean(),
+  /** Whether a void block led to this step, which its sheet states. */
+  voided: v.boolean(),
+  /** Whether the participant stopped, or was stopped, before the end. */
+  stopped: v.boolean(),
+  /** The number of the newest command of the experimenter that was followed; 0: none. */
+  commandsSeen: integerBetween(0, Number.MAX_SAFE_INTEGER),
+  /** The number of changes of this session, by which states are ordered. */
+  changes: integerBetween(0, Number.MAX_SAFE_INTEGER),
   /** The attempt at the present step, from 1. */
   attempt: integerBetween(1, 1000),
   /** The number of recorded events, which continue their ids after a reload. */
@@ -70,7 +63,6 @@ const progressSchema = v.object({
 /** The progress of a participant in the schedule, as plain JSON that survives reloads and crashes. */
 export type Progress = v.InferOutput<typeof progressSchema>;
 
-/** Returns the progress at the beginning of a session. */
 export function begin(schedule: Schedule, simulated = false): Progress {
   return {
     version: progressVersion,
@@ -85,6 +77,13 @@ export function begin(schedule: Schedule, simulated = false): Progress {
     draft: {},
     motion: null,
     runs: {},
+    unwell: false,
+    practised: [],
+    waiting: false,
+    voided: false,
+    stopped: false,
+    commandsSeen: 0,
+    changes: 0,
     attempt: 1,
     events: 0,
   };
@@ -136,9 +135,7 @@ const runs = ({ running, paused, waiting }: Progress): boolean => running && !pa
 
 /** Returns a report a number of seconds later, with its clock advanced. */
 export const sinceReport = (report: Progress, seconds: number): Progress =>
-  runs(report) && report.since === null
-    ? { ...report, elapsed: Math.min(longestStep, report.elapsed + Math.max(0, seconds)) }
-    : report;
+  runs(report) ? { ...report, elapsed: Math.min(longestStep, report.elapsed + Math.max(0, seconds)) } : report;
 
 /**
  * Returns the progress with its clock running by that of this device at `now` [s since 1970], after a report or if the
@@ -153,7 +150,7 @@ export const runningOn = (progress: Progress, now: number): Progress =>
  * then the step, its attempt, and the changes within it.
  */
 export function isLater(schedule: Schedule, state: Progress, than: Progress): boolean {
-  const order = ({ runs, step, attempt, changes = 0 }: Progress) => [
+  const order = ({ runs, step, attempt, changes }: Progress) => [
     Object.values(runs).reduce((sum, run) => sum + run, 0),
     schedule.steps.findIndex(({ id }) => id === step),
     attempt,

@@ -5,7 +5,6 @@ const statuses = {
   ...{ invalid: 400, unauthorised: 401, forbidden: 403, unknown: 404, conflict: 409, limited: 429, full: 507 },
   /** Participants have begun with the plan, hence it cannot change, but a new version can be added. */
   begun: 409,
-  /** There are too many requests. */
   busy: 503,
   /** Another program writes to the database. */
   locked: 503,

@@ -42,7 +42,6 @@ export interface Receipt {
   readonly at: number;
 }
 
-/** The state of a participant for the experimenter. */
 export interface ParticipantState {
   readonly participant: string;
   /** The version of the plan that this participant follows. */
@@ -87,7 +86,6 @@ export interface PlanVersion {
 
 export interface StudyInfo {
   readonly plan: StudyPlan;
-  /** The version of the plan. */
   readonly version: number;
   /** All versions, the oldest first. */
   readonly versions: readonly PlanVersion[];
@@ -96,7 +94,6 @@ export interface StudyInfo {
   readonly retentionUntil: number;
 }
 
-/** The public part of a study. */
 export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'> {
   /** The languages that participants may choose. */
   readonly languages: readonly [string, ...string[]];
@@ -129,7 +126,6 @@ export interface Claim extends ParticipantProfile {
   readonly progress: Progress | null;
 }
 
-/** An entry in the list of studies. */
 export interface StudyListing extends Pick<StudyPlan, 'id' | 'participants'> {
   /** The title in the study's first language. */
   readonly title: string;
@@ -138,7 +134,6 @@ export interface StudyListing extends Pick<StudyPlan, 'id' | 'participants'> {
   readonly retentionUntil: number;
 }
 
-/** All records of a study. */
 export interface RecordedStudy extends StudyInfo {
   readonly records: readonly StoredRecord[];
 }

@@ -12,7 +12,6 @@ const question = v.strictObject({
   about: v.exactOptional(text(40)),
   /** The form of its answer, if it differs from that of the questionnaire. */
   answer: v.exactOptional(answerFormSchema),
-  /** Whether it may stay without an answer. */
   optional: v.exactOptional(flag),
   /** Whether scales count from + to − answer. The answer is recorded as given. */
   reversed: v.exactOptional(flag),
@@ -37,7 +36,6 @@ const scale = v.strictObject({
   ),
 });
 
-/** The schema of a questionnaire's file. */
 export const questionnaireSchema = v.strictObject({
   id: identifier,
   title: words(80),
@@ -54,7 +52,6 @@ export const questionnaireSchema = v.strictObject({
   scales: v.exactOptional(v.array(scale, 'expected a list of scales')),
 });
 
-/** A questionnaire as its file has it. */
 export type QuestionnaireFile = v.InferOutput<typeof questionnaireSchema>;
 /** A value that is computed from the answers of a questionnaire. */
 export type Scale = v.InferOutput<typeof scale>;

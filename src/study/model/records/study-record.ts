@@ -22,7 +22,6 @@ export const longestRecord = 65_536;
 
 const blockNumber = integerBetween(1, 1000);
 
-/** The place of a record in the study. */
 const placeSchema = v.object({
   task: identifier,
   /** The position of the condition in the participant's order, from 1. */
@@ -67,9 +66,8 @@ const eventSchema = v.variant('type', [
     place: v.nullable(placeSchema),
     step: text(120),
   }),
-  /** `by` is absent in older records. */
-  v.object({ type: v.literal('pause'), by: v.exactOptional(author) }),
-  v.object({ type: v.literal('resume'), by: v.exactOptional(author) }),
+  v.object({ type: v.literal('pause'), by: author }),
+  v.object({ type: v.literal('resume'), by: author }),
   /** The consent to motion was withdrawn with the code, and the recordings were deleted. */
   v.object({ type: v.literal('motion-withdrawn') }),
   v.object({ type: v.literal('remark'), text: text(2000) }),
@@ -153,7 +151,7 @@ export type StudyEvent = v.InferOutput<typeof eventSchema>;
 /** A record about a participant, complete in itself. */
 export type StudyRecord = v.InferOutput<typeof recordSchema>;
 
-/** The fields that the server adds to a record. They are absent in records of earlier versions and of no server. */
+/** The fields that the server adds to a record. They are absent in records that no server has stored. */
 const arrivalSchema = v.object({
   /** The token with which the record came. */
   author: v.exactOptional(author),
@@ -162,7 +160,6 @@ const arrivalSchema = v.object({
 });
 
 export type RecordAuthor = NonNullable<v.InferOutput<typeof arrivalSchema>['author']>;
-/** A record as the server returns it. */
 export type StoredRecord = StudyRecord & v.InferOutput<typeof arrivalSchema>;
 export type DemographicsRecord = Extract<StudyRecord, { kind: 'demographics' }>;
 export type TrialRecord = Extract<StudyRecord, { kind: 'trial' }>;

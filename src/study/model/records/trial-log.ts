@@ -58,7 +58,6 @@ export const absenceSchema = v.object({
   time: duration,
   /** For how long it stood. */
   seconds: duration,
-  /** Whether the match was given up after that. */
   givenUp: v.boolean('expected true or false'),
 });
 export type TrialAbsence = v.InferOutput<typeof absenceSchema>;
@@ -71,7 +70,6 @@ export const outcomeSchema = v.object({
   ended: v.picklist(trialEnds, `expected ${trialEnds.slice(0, -1).join(', ')} or stopped`),
   /** Points; for a group, those of the group. */
   score: numberBetween(0, 100_000),
-  /** The highest possible score. */
   maximum: numberBetween(1, 100_000),
   /** Shots, throws or other attempts of this participant, and how many of them scored. */
   shots: count,
@@ -83,8 +81,8 @@ export const outcomeSchema = v.object({
         /** The time on the game's clock, which also pauses while the head is lost. */
         time: duration,
         /**
-         * The second of the trial at the frame that showed it; `clock` converts it to the recording. Absent in older
-         * records.
+         * The second of the trial at the frame that showed it; `clock` converts it to the recording. Absent: the trial
+         * is simulated.
          */
         onset: v.exactOptional(duration),
         type: v.picklist(['hit', 'miss', 'catch']),
@@ -121,7 +119,7 @@ export const outcomeSchema = v.object({
   assists: v.pipe(v.array(text(60)), v.maxLength(16, 'expected at most sixteen assists')),
   /** The number of recorded tracking frames; 0 without consent. */
   motionFrames: count,
-  /** Absent in older records, or unknown. */
+  /** Absent: unknown. */
   clock: v.exactOptional(trialClockSchema),
   /** The absences of the group during the match, the same for all its participants; absent: none. */
   absences: v.exactOptional(

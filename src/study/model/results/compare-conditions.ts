@@ -29,7 +29,6 @@ export interface Comparison extends MeasureName {
   readonly equivalenceHolmP: number | null;
 }
 
-/** The tests of a comparison. */
 type Tests = Pick<Comparison, 'test' | 'ranks' | 'equivalence'>;
 
 export interface Results {

@@ -26,7 +26,6 @@ export interface ByFamily<T> {
   readonly planned: T;
 }
 
-/** The measures of a study. */
 export type StudyMeasures = ByFamily<readonly Measure[]>;
 
 /** Returns the measures of a study; throws if simulated records and records of people are mixed. */
@@ -64,7 +63,6 @@ export function cohortViews({ conditions }: Pick<StudyPlan, 'conditions'>): read
   return all.length > 1 ? [all, ...all.map((id) => [id])] : [all];
 }
 
-/** Returns every pair of cohorts in every view. */
 const cohortComparisonsOf = (plan: StudyPlan): readonly ComparedCohorts[] =>
   pairsOf(plan.cohorts ?? []).flatMap((sides) => cohortViews(plan).map((conditions) => ({ sides, conditions })));
 

@@ -15,7 +15,6 @@ export interface Exclusion {
 /** A question or a scale of a questionnaire after a task. */
 export type QuestionPlace = Pick<AnswerRow, 'task' | 'questionnaire' | 'question'>;
 
-/** The name of a measure. */
 export interface MeasureName {
   /** "Q1" or the id of a task; for a question in more than one place "archery/nasa-tlx/mental". */
   readonly of: string;
@@ -30,7 +29,6 @@ export function nameInPlan({ of, asked, unit }: MeasureName): string | null {
   return unit === 'percent' ? null : `${of}/score`;
 }
 
-/** Returns whether the plan names a measure. */
 export function isPlanned(measure: MeasureName, plan: PlannedTests): boolean {
   const name = nameInPlan(measure);
   return name !== null && plannedMeasures(plan).includes(name);
@@ -52,7 +50,6 @@ export function aboutOf(measured: MeasureName, plan: Pick<StudyPlan, 'questionna
   return scale?.label ?? question?.about ?? '';
 }
 
-/** The values of a measure. */
 export interface Measure extends MeasureName {
   /**
    * The mean of the counted values of each participant (or group) under each condition, in the order of their codes.

@@ -58,7 +58,6 @@ const endColumns = (name: string, source: string, none?: string) => [
   number(`high_${name}`, '', 'any', source, none === undefined ? 'Upper end.' : `Upper end; both empty: ${none}.`),
 ];
 
-/** Returns the cells of the ends of an interval. */
 const endCells = (name: string, ends: Interval | null | undefined) => ({
   [`low_${name}`]: ends?.low ?? null,
   [`high_${name}`]: ends?.high ?? null,
@@ -263,10 +262,8 @@ const tableOf =
     ),
   });
 
-/** Returns comparisons of two conditions as a tidy table. */
 export const conditionsTable = tableOf(twoConditions);
 
-/** Returns comparisons of two cohorts as a tidy table. */
 export const cohortsTable = tableOf(twoCohorts);
 
 const fTest = 'computed: analysis of variance, type III squares';
@@ -316,7 +313,6 @@ const effectCells = (effect: Effect) => ({
   ...endCells('eta', effect.interval),
 });
 
-/** Returns the analysed effects by name. */
 export const effectsOf = (variance: VarianceAnalysis | null): readonly (readonly [string, Effect])[] =>
   (
     [
@@ -351,7 +347,6 @@ export const overallTable = (name: string, comparisons: readonly OverallComparis
   ),
 });
 
-/** Returns frame times as a tidy table. */
 export const frameTimeTable = (rows: readonly FrameTimeRow[], { simulated }: Pick<TableFacts, 'simulated'>): Table => ({
   name: 'frame-times',
   columns: [

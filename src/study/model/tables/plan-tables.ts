@@ -70,7 +70,6 @@ const scaleDefinitionColumns = [
   number('to', '', 'any', 'computed from the answers that can be given', 'Greatest value.'),
 ];
 
-/** Returns the table of scales and their computation. */
 export const scaleTable = (plan: StudyPlan): Table => ({
   name: 'scale-definitions',
   columns: scaleDefinitionColumns,
@@ -125,7 +124,6 @@ const conditionColumns = [
   number('dropout_seconds', 's', '0.1 to 10', from('dropouts.seconds'), 'Duration of each loss.'),
 ];
 
-/** Returns the table of conditions and cohorts of a plan. */
 export const conditionTable = ({ conditions, cohorts = [] }: StudyPlan): Table => ({
   name: 'conditions',
   columns: conditionColumns,

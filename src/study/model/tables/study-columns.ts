@@ -4,9 +4,7 @@ import { eventTypes } from '../records/study-record';
 import { trialEnds } from '../records/trial-log';
 import { boolean, number, text } from './tidy-csv';
 
-/** The values of whole numbers from 1. */
 const ordinals = '1, 2, 3 …';
-/** The values of whole numbers from 0. */
 const counts = '0, 1, 2 …';
 const positive = '0 and more';
 const ids = 'small letters, digits, hyphens';
@@ -23,7 +21,7 @@ const who = [
     'author',
     'participant, experimenter',
     'records: author',
-    'Whose token the record came with; empty: stored by an earlier version.',
+    'Whose token the record came with; empty: no server has stored it.',
   ),
   text(
     'flag',

@@ -124,7 +124,6 @@ function participantRows(records: readonly StoredRecord[], plan: StudyPlan, flag
 const absenceText = ({ participants, time, seconds, givenUp }: TrialAbsence): string =>
   `${participants.join(' ')}: ${seconds.toFixed(1)} s at second ${time.toFixed(1)}${givenUp ? ', given up' : ''}`;
 
-/** Returns the text of an event. */
 function eventText(body: StudyEvent): string {
   switch (body.type) {
     case 'remark':
@@ -137,7 +136,7 @@ function eventText(body: StudyEvent): string {
       return absenceText(body);
     case 'pause':
     case 'resume':
-      return body.by === undefined ? '' : `by the ${body.by}`;
+      return `by the ${body.by}`;
     case 'unwell':
       return `${body.questionnaire} ${body.measure}: ${body.value}`;
     default:

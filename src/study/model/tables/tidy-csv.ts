@@ -11,7 +11,6 @@ export interface Column {
   readonly description: string;
 }
 
-/** Returns a column of text. */
 export const text = (name: string, values: string, source: string, description: string): Column => ({
   name,
   type: 'text',
@@ -31,7 +30,6 @@ export const number = (name: string, unit: string, values: string, source: strin
   description,
 });
 
-/** Returns a column of TRUE and FALSE. */
 export const boolean = (name: string, source: string, description: string): Column => ({
   name,
   type: 'boolean',

@@ -5,7 +5,6 @@ import { Rejection } from '../../model/progress/rejection';
 import type { ParticipantState, Receipt, StudyInfo } from '../../model/progress/study-api';
 import { client, requestStudy } from '../experimenter-access';
 
-/** A study that is open on the experimenter's page. */
 export interface OpenStudy extends StudyInfo {
   readonly states: readonly ParticipantState[];
   /** The time at which the states were received, by the clock of this page [s since 1970]. */
@@ -47,7 +46,6 @@ export async function openStudy(id: string): Promise<void> {
   }
 }
 
-/** Requests the state of the open study again. */
 export async function refresh(): Promise<void> {
   const server = client.value;
   const id = study.value?.plan.id;

@@ -87,7 +87,6 @@ function StudyHead({ study }: { readonly study: OpenStudy }) {
   );
 }
 
-/** The remarks to read before the first participant comes. */
 const Remarks = ({ remarks }: { readonly remarks: readonly string[] }) =>
   remarks.length > 0 && (
     <section class="remarks">
@@ -103,7 +102,6 @@ const Remarks = ({ remarks }: { readonly remarks: readonly string[] }) =>
 /** Whether a new study is marked as simulated. */
 const simulated = signal(false);
 
-/** The card on which a study is started. */
 export function NewStudy() {
   const begin = (name: string, json: () => Promise<string>) =>
     void addStudy({ name, json, simulated: simulated.value });

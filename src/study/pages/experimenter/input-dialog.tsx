@@ -4,7 +4,6 @@ import { type ComponentChildren, render } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { Button, Labelled } from 'threepoint-ui/controls';
 
-/** The texts and fields of a dialog. */
 interface InputDialog {
   readonly title: string;
   /** The label of the confirming button. */
@@ -64,5 +63,4 @@ export function askInDialog(question: InputDialog): Promise<FormData | null> {
   });
 }
 
-/** Returns the sentence of a dialog's fields. */
 export const sentenceOf = (fields: FormData): string => String(fields.get('sentence')).trim();

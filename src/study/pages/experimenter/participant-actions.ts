@@ -46,7 +46,6 @@ export async function voidBlock(participant: string): Promise<void> {
   });
 }
 
-/** Ends a participant's session. */
 export const stop = (participant: string) =>
   withSentence(
     {
@@ -103,7 +102,6 @@ export const remark = (participant: string) =>
     },
   );
 
-/** Deletes what is stored of a participant. */
 export const remove = (participant: string) =>
   withSentence(
     {

@@ -2,7 +2,7 @@ import type { ExperimenterClient } from '../../client/study-client';
 import { checkedPlan, participantsOf, type StudyPlan } from '../../model/plan/plan';
 import {
   type CopyPurpose,
-  modelsWith,
+  rejectUnknownEffects,
   type StatedEffects,
   simulatedParticipants,
   simulatedPlan,
@@ -46,11 +46,11 @@ export async function storeSimulation(
   plan: StudyPlan,
   { seed, effects, at, onProgress = () => undefined }: StoredSimulationOptions,
 ): Promise<string> {
-  const models = modelsWith(plan, effects);
+  rejectUnknownEffects(plan, effects);
   const simulated = await addCopy(client, plan, 'simulated');
   const all = participantsOf(simulated).length;
   let done = 0;
-  for (const one of simulatedParticipants(simulated, models, seed, at - all * secondsPerParticipant)) {
+  for (const one of simulatedParticipants(simulated, effects, seed, at - all * secondsPerParticipant)) {
     await client.addSimulated(simulated.id, one);
     done += 1;
     onProgress(done, all);

@@ -71,7 +71,6 @@ export async function simulate(plan: StudyPlan): Promise<void> {
   });
 }
 
-/** Deletes a simulated study completely. */
 export async function deleteSimulated(id: string): Promise<void> {
   if (!confirm(`Delete “${id}” and everything in it? It is simulated: it has no data of people.`)) return;
   await attempt(async (server) => {

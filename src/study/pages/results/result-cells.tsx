@@ -14,7 +14,6 @@ export const fixed = (value: number | null | undefined, digits: number) =>
 export const pText = (p: number | null | undefined) =>
   p == null ? none : p < 0.0005 ? '< .001' : p.toFixed(3).replace(/^0/, '');
 
-/** Returns a mean with its interval. */
 export const meanCell = (mean: number | null | undefined, between: Interval | null | undefined, digits: number) => (
   <div>
     {fixed(mean, digits)}
@@ -52,7 +51,6 @@ export const csvButton = (table: Table, file: string, label = 'CSV') => (
   />
 );
 
-/** The note below planned tests. */
 export const PlannedNote = () => (
   <p class="soft" role="note">
     The following results are exploratory: Holm’s p is adjusted over each table.

@@ -15,7 +15,6 @@ export interface ShownStudy extends OpenedStudy {
 export interface ShownResults {
   readonly study: ShownStudy;
   readonly measures: StudyMeasures;
-  /** Returns the label of a condition or a cohort. */
   labelOf(id: string): string;
   /** Returns the place of a condition or a cohort in the plan, whose order is that of all figures and tables. */
   placeOf(id: string): number;

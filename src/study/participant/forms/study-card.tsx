@@ -29,7 +29,6 @@ const Dots = ({ phrases, all, number, goTo }: ScreenQuestion) => (
   </nav>
 );
 
-/** The text of a question and its field. */
 const Question = ({ id, text, language, optional, field, phrases }: ScreenQuestion) => (
   <fieldset class="scale" lang={language}>
     <legend>

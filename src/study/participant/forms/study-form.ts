@@ -1,13 +1,11 @@
 import type { Phrases } from '../../model/phrases/phrases';
 import type { PublicStudy } from '../../model/progress/study-api';
 
-/** A participant and the invitation. */
 export interface Invited {
   readonly participant: string;
   readonly invitation: string;
 }
 
-/** The choices on the form of consent. */
 export interface ConsentChoices {
   /** Whether tracked frames may be kept. */
   readonly motion: boolean;
@@ -51,12 +49,10 @@ type FormContent =
       /** The address of the page where the code is entered. */
       readonly withdrawalPage: string;
       noted(): void;
-      /** Ends the session. */
       stop(): void;
     }
   | {
       readonly kind: 'demographics';
-      /** Ends the session. */
       stop(): void;
       /** Returns a complaint, or null. */
       done(answers: Record<string, unknown>): string | null;

@@ -1,7 +1,6 @@
 import type { Phrases } from '../../model/phrases/phrases';
 import type { ScreenField } from './question-view';
 
-/** A button of a screen. */
 export interface ScreenButton {
   readonly id: string;
   readonly label: string;
@@ -50,6 +49,5 @@ export interface StudyScreen {
   readonly buttons: readonly ScreenButton[];
   /** Small text at the foot: the upload status, and whether the participant is simulated. */
   readonly footnote: string;
-  /** Whether the screen reports trouble. */
   readonly trouble: boolean;
 }

@@ -19,7 +19,6 @@ export interface StudySituation {
   readonly inSession: boolean;
   /** The position in the questionnaire of the present step. */
   readonly questionnaire: Readonly<Pick<QuestionnaireState, 'question' | 'typed' | 'triedToSubmit'>>;
-  /** The step of the measurement; null: there is no measurement. */
   readonly calibration: CalibrationStep | null;
   /** What is wrong with device, room or height of a participant who takes part alone; empty: nothing. */
   readonly setupProblems: readonly string[];

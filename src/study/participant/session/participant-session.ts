@@ -78,7 +78,6 @@ export class ParticipantSession {
     this.#onCommand = onCommand;
   }
 
-  /** The session as this device stores it. */
   get kept(): KeptSession {
     return this.#store.session;
   }
@@ -87,7 +86,6 @@ export class ParticipantSession {
     return this.kept.plan;
   }
 
-  /** The phrases of the page in the participant's language. */
   get phrases(): Phrases {
     const language = this.progress.language ?? languagesOf(this.plan)[0];
     if (this.#phrases?.language !== language) this.#phrases = phrasesOf(this.plan, language);
@@ -188,8 +186,8 @@ export class ParticipantSession {
     await this.#store.save();
     try {
       await this.#report();
-      const { commandsSeen = 0 } = this.progress;
-      for (const command of await this.#client.commands(this.kept, commandsSeen)) this.#follow(command);
+      const commands = await this.#client.commands(this.kept, this.progress.commandsSeen);
+      for (const command of commands) this.#follow(command);
       // The changes of a command are reported at once, because the experimenter waits for them.
       if (this.progress !== this.#reported) await this.#report();
       this.#online = true;
@@ -220,7 +218,7 @@ export class ParticipantSession {
 
   /** Follows each command once, even across a reload or on another device. */
   #follow({ number, command }: NumberedCommand): void {
-    if (number <= (this.progress.commandsSeen ?? 0)) return;
+    if (number <= this.progress.commandsSeen) return;
     this.#onCommand();
     const { step, running, motion } = this.progress;
     const isPause = command.type === 'pause' || command.type === 'resume';

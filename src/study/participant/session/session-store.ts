@@ -23,7 +23,6 @@ export class SessionStore {
   readonly #vault: StudyVault | null;
   readonly #onChange: () => void;
   #session: KeptSession;
-  /** The session in the vault. */
   #saved: KeptSession;
   /** The records and recordings that the server has not acknowledged, by id and by trial. */
   readonly #records: Map<string, StudyRecord>;
@@ -131,14 +130,12 @@ export class SessionStore {
     return batch;
   }
 
-  /** Removes records that the server has. */
   async acknowledge(ids: readonly string[]): Promise<void> {
     for (const id of ids) this.#records.delete(id);
     this.#unsaved = this.#unsaved.filter(({ id }) => !ids.includes(id));
     await this.#remove((vault, session) => vault.removeRecords(session, ids));
   }
 
-  /** Removes the recording of a trial, which the server has. */
   async acknowledgeMotion(trial: string): Promise<void> {
     this.#motion.delete(trial);
     this.#unsavedMotion.delete(trial);

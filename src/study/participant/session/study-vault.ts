@@ -6,7 +6,6 @@ import type { ParticipantProfile } from '../../model/records/participant-profile
 import type { StudyRecord } from '../../model/records/study-record';
 import { StorageTimeout } from './storage-timeout';
 
-/** A session as this device stores it. */
 export interface KeptSession extends TakenPlace, ParticipantProfile {
   /** The withdrawal code; null: the participant has noted it. */
   readonly withdrawalCode: string | null;
@@ -40,14 +39,6 @@ export class StorageEvicted extends Error {
   }
 }
 
-/** The format of earlier versions, in which the number of the newest command was stored next to the progress. */
-type EarlierSession = KeptSession & { readonly commandsSeen?: number };
-
-function broughtUpToDate({ commandsSeen, ...session }: EarlierSession): KeptSession {
-  if (commandsSeen === undefined) return session;
-  return { ...session, progress: { commandsSeen, ...session.progress } };
-}
-
 const everyOf = ({ study, participant }: StudyPlace) =>
   IDBKeyRange.bound([study, participant, ''], [study, participant, '\uffff']);
 
@@ -68,10 +59,7 @@ export class StudyVault {
   }
 
   session({ study, participant }: StudyPlace): Promise<KeptSession | null> {
-    return this.#request(async () => {
-      const kept = await this.#database.get('sessions', [study, participant]);
-      return kept ? broughtUpToDate(kept) : null;
-    });
+    return this.#request(async () => (await this.#database.get('sessions', [study, participant])) ?? null);
   }
 
   /**
@@ -124,7 +112,6 @@ export class StudyVault {
     return this.#request(() => this.#database.delete('motion', [study, participant, trial]));
   }
 
-  /** Deletes everything of this participant from the device. */
   forget(place: StudyPlace): Promise<void> {
     return this.#request(async () => {
       const transaction = this.#database.transaction(['sessions', 'records', 'motion'], 'readwrite');

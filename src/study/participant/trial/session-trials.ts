@@ -95,7 +95,7 @@ export class SessionTrials {
     if (!this.prepared) void this.#prepare(step);
     const ready = this.prepared?.state === 'ready';
     if (progress.running && !progress.paused && !this.#trial && ready && this.#host.inSession()) this.#start(step);
-    if (this.#trial?.waitingFor && this.#now() >= this.#askAgainAt) void this.#askAgain(step);
+    if (this.#trial?.runner.waitingFor && this.#now() >= this.#askAgainAt) void this.#askAgain(step);
   }
 
   /** Passes a frame to the trial; returns a trial that is over, once, or null. */

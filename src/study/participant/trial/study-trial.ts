@@ -2,13 +2,7 @@ import { type Calibration, type EstimatorName, type TrackingFrame, writeRecordin
 import { isPlayed, type PlayedStep, type Schedule, type StudyStep } from '../../model/plan/schedule';
 import { maxMotionBytes } from '../../model/progress/study-api';
 import { TrialStopwatch } from '../../model/records/trial-clock';
-import {
-  type FrameListener,
-  maxAbsences,
-  type TrialAbsence,
-  TrialLog,
-  type TrialOutcome,
-} from '../../model/records/trial-log';
+import { type FrameListener, maxAbsences, TrialLog, type TrialOutcome } from '../../model/records/trial-log';
 import type { TaskEnd, TaskRunner } from './task-runner';
 
 /** Returns the last trial or tutorial before a step, or undefined. */
@@ -45,7 +39,6 @@ const maxMotionFrames = 40_000;
 /** The drop of the eyes below their calibrated height that indicates a seated participant [m]. */
 const seatedDrop = 0.25;
 
-/** The clock of a group's match. */
 export interface MatchClock {
   readonly runs: boolean;
   readonly second: number;
@@ -65,8 +58,8 @@ export interface TrialOptions {
 export class PlayedTrial {
   /** The step, run and attempt of the trial. When the session changes to another one, the trial is void. */
   readonly key: string;
+  readonly runner: TaskRunner;
   readonly #step: PlayedStep;
-  readonly #runner: TaskRunner;
   readonly #host: TrialHost;
   /** The device and the calibration at the start. */
   readonly #device: TrialOutcome['device'];
@@ -85,7 +78,7 @@ export class PlayedTrial {
   constructor(step: PlayedStep, runner: TaskRunner, host: TrialHost, { key, motion, seed, now }: TrialOptions) {
     this.key = key;
     this.#step = step;
-    this.#runner = runner;
+    this.runner = runner;
     this.#host = host;
     this.#device = host.device();
     this.#calibration = host.calibration();
@@ -99,37 +92,17 @@ export class PlayedTrial {
     runner.start({ seed, seconds: step.seconds });
   }
 
-  /** The participants that the trial waits for, empty if unknown; null: none. */
-  get waitingFor(): readonly string[] | null {
-    return this.#runner.waitingFor;
-  }
-
-  /** Whether the game is paused by another participant of the group. */
-  get standing(): boolean {
-    return this.#runner.pausedByOther;
-  }
-
   /** Whether the match of the group runs, and its second; null: a game for one. */
   get matchClock(): MatchClock | null {
-    const { waitingFor, pausedByOther, second } = this.#runner;
+    const { waitingFor, pausedByOther, second } = this.runner;
     return second === undefined ? null : { runs: waitingFor === null && !pausedByOther, second: second ?? 0 };
-  }
-
-  /** Returns the absences of the group that ended since the last call. */
-  takeAbsences(): readonly TrialAbsence[] {
-    return this.#runner.takeAbsences?.() ?? [];
-  }
-
-  /** Whether the game was lost, so that the trial is void. */
-  get interrupted(): boolean {
-    return this.#runner.interrupted;
   }
 
   /** Pauses or resumes game and clock; nothing is counted in a pause. */
   pause(on: boolean): void {
     if (on === this.#paused) return;
     this.#paused = on;
-    this.#runner.pause(on);
+    this.runner.pause(on);
   }
 
   /**
@@ -137,18 +110,18 @@ export class PlayedTrial {
    * display for a moment, otherwise null.
    */
   follow(pageTime: number, frame: TrackingFrame | null): FinishedTrial | null {
-    if (this.#runner.waitingFor !== null) return null;
+    if (this.runner.waitingFor !== null) return null;
     if (this.#isPaused) {
       this.#seconds.pause(pageTime);
       return null;
     }
     const time = this.#seconds.run(pageTime);
     if (!this.#begun) this.#begin(frame);
-    for (const event of this.#runner.take()) {
+    for (const event of this.runner.take()) {
       if (event.type === 'shot') this.#log.shot();
       else this.#log.event({ ...event, onset: time });
     }
-    const { end } = this.#runner;
+    const { end } = this.runner;
     if (this.#endedAt !== null) return end && time - this.#endedAt > endShownSeconds ? this.#finish(end) : null;
     this.#recordFrame(time, frame);
     if (end) this.#endedAt = time;
@@ -157,18 +130,18 @@ export class PlayedTrial {
 
   /** Ends a game whose end is on display, without the rest of the moment; returns null if the game goes on. */
   conclude(): FinishedTrial | null {
-    const { end } = this.#runner;
+    const { end } = this.runner;
     return end && this.#endedAt !== null ? this.#finish(end) : null;
   }
 
   /** Ends the game without a result. */
   abort(): void {
     this.#host.listenToFrames(null);
-    this.#runner.abort();
+    this.runner.abort();
   }
 
   get #isPaused(): boolean {
-    return this.#paused || this.#runner.pausedByOther;
+    return this.#paused || this.runner.pausedByOther;
   }
 
   /** Takes the first frame of the trial into account. */

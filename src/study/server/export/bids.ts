@@ -14,7 +14,6 @@ import { incompleteReason } from '../../model/records/trial-log';
 import { voidedBlocks } from '../../model/tables/study-tables';
 import type { MotionFile } from '../study-storage';
 
-/** The content of a data set. */
 export interface BidsContent {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
@@ -95,10 +94,7 @@ const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
 
 const seconds = (value: number): number => Math.round(value * 1e6) / 1e6;
 
-/**
- * Returns the events of a trial on the clock of its recording, or null for older records, which do not relate the two
- * clocks.
- */
+/** Returns the events of a trial on the clock of its recording, or null if the record has no clock. */
 function eventRows({ trial, first }: Run): Readonly<Record<string, unknown>>[] | null {
   const { clock, events, seconds: length } = trial.body.outcome;
   if (!clock) return null;

@@ -8,9 +8,7 @@ import { studyTables } from '../../model/tables/study-tables';
 import { codebookOf, type Table, tidyCsv } from '../../model/tables/tidy-csv';
 import type { MotionFile, ServedSoftware } from '../study-storage';
 import { bidsDataset } from './bids';
-import { portableName } from './portable-name';
 
-/** The content of an export. */
 export interface ExportContent {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
@@ -66,13 +64,36 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
   ].join('\r\n');
 }
 
-/** Returns the path of a recording in an export. */
+const sha256 = (text: string): string => createHash('sha256').update(text).digest('hex');
+
+/** The longest name [characters], below the 255 that file systems accept, so that a prefix and an ending fit. */
+const longestName = 160;
+/** Names that Windows reserves for devices, with or without an ending. */
+const reserved = /^(con|prn|aux|nul|com\d|lpt\d)(\.|$)/;
+
+const escaped = (unit: string): string => {
+  const code = unit.charCodeAt(0);
+  return code > 0xff ? `%u${code.toString(16).padStart(4, '0')}` : `%${code.toString(16).padStart(2, '0')}`;
+};
+
+/**
+ * Returns a name for a file or folder that differs for every text on every file system: small letters, digits, "-", "@"
+ * and "." stay, "/" becomes "_", and all else is escaped as "%" with its code. The ends have no dots, and the names of
+ * devices are escaped. Long names end with a hash.
+ */
+function portableName(text: string): string {
+  const name = text
+    .replace(/[^a-z0-9@./-]|^\.|\.$/g, escaped)
+    .replaceAll('/', '_')
+    .replace(reserved, (device) => `${escaped(device)}${device.slice(1)}`);
+  if (name.length <= longestName) return name;
+  return `${name.slice(0, longestName - 65)}~${sha256(text)}`;
+}
+
 export const motionPath = ({ participant, trial }: Pick<MotionFile, 'participant' | 'trial'>): string =>
   `motion/${participant}-${portableName(trial)}.json`;
 
 const json = (value: unknown): string => `${JSON.stringify(value, null, 2)}\n`;
-
-const sha256 = (text: string): string => createHash('sha256').update(text).digest('hex');
 
 /** Returns the tables of an export by their path without extension; only a whole study has results. */
 function tablesOf({ records, plan }: ExportContent, whole: boolean): readonly Table[] {

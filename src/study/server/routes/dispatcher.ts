@@ -123,7 +123,6 @@ export class StudyDispatcher {
     return result;
   }
 
-  /** Returns the answer to a request that failed. */
   #answerTo(error: unknown, effect: Effect): HttpResponse {
     if (error instanceof Rejection && error.reason === 'lost') this.#logLost(error);
     const known = httpErrorOf(error, effect);

@@ -87,7 +87,6 @@ export function createStudyGuard({ store, experimenterToken, onFailedAttempt }: 
     token !== null && store.places.holds(study, participant, token);
 
   return {
-    /** Returns whether the request has the token of this participant. */
     isParticipant,
     /** Checks the head of a request; invitations and codes are in its body. */
     async admit(access: RouteAccess, sender: Sender): Promise<void> {

@@ -1,7 +1,7 @@
-import { checked, integerBetween, parseRecording, text, ValidationError } from 'threepoint/core';
+import { checked, integerBetween, parseRecording, text } from 'threepoint/core';
 import { jsonOf, jsonResponse, noContent, textOf } from 'threepoint-http';
 import * as v from 'valibot';
-import { checkedPlan, type StudyPlan } from '../../model/plan/plan';
+import type { StudyPlan } from '../../model/plan/plan';
 import { scheduleFor } from '../../model/plan/schedule';
 import { Rejection } from '../../model/progress/rejection';
 import { commandSchema, type PlayedTogether, playedTogetherSchema } from '../../model/progress/study-api';
@@ -39,27 +39,12 @@ const sessionOf = async (store: StudyStorage, { study, participant, at }: StudyC
   ...profileFrom(await store.records.all(study, participant)),
 });
 
-/** Throws if a stored plan is no longer valid for a new study, because nothing can be recorded by its rules. */
-function rejectOutdated(plan: StudyPlan): void {
-  try {
-    checkedPlan(plan);
-  } catch (error) {
-    if (!(error instanceof ValidationError)) throw error;
-    throw new Rejection(
-      'conflict',
-      `the plan of this study is of an older version of the program and no longer valid: ${error.message}. ` +
-        'Its records can be exported and deleted. Give a study with another plan another id',
-    );
-  }
-}
-
 /**
  * Takes a place. `read` is the version of the text that was consented to, if it was sent. Throws if the plan has
  * another one; the place stays free.
  */
 async function takePlace(store: StudyStorage, { study, participant, at }: StudyCall, read: string | undefined) {
   const plan = await store.plans.planFor(study, participant);
-  rejectOutdated(plan);
   const { version } = plan.consent;
   if (read !== undefined && read !== version) {
     throw new Rejection('conflict', `consent was given to text ${read}, but the study shows ${version}`, {
@@ -159,7 +144,6 @@ function placeRoutes({ store, guard, seats }: StudyParts): StudyRoute[] {
   ];
 }
 
-/** Returns the routes of what is recorded of a participant. */
 function recordRoutes(parts: StudyParts): StudyRoute[] {
   const { store, guard } = parts;
   return [
@@ -196,5 +180,4 @@ function recordRoutes(parts: StudyParts): StudyRoute[] {
   ];
 }
 
-/** Returns the routes of one participant. */
 export const participantRoutes = (parts: StudyParts): StudyRoute[] => [...placeRoutes(parts), ...recordRoutes(parts)];

@@ -59,7 +59,6 @@ export async function exportOf({ store, software, makeZip }: StudyParts, asked: 
   };
 }
 
-/** Returns the routes of the server and of one study. */
 export function studyRoutes(parts: StudyParts): StudyRoute[] {
   const { store, guard } = parts;
   return [

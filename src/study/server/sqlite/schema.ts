@@ -1,18 +1,23 @@
 import type { DatabaseSyncInstance } from '@photostructure/sqlite';
-import { newCode } from '../codes';
 
 /**
  * Each migrates the database from its index to the next version. Never change a released one; add another one, and a
  * file of the new schema for the tests (tests/study/server/write-schema.ts).
  */
-const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))[] = [
+const migrations: readonly string[] = [
   `
   CREATE TABLE studies (
     id TEXT PRIMARY KEY,
-    plan TEXT NOT NULL,
     simulated INTEGER NOT NULL CHECK (simulated IN (0, 1)),
     created_at REAL NOT NULL,
     retention_until REAL NOT NULL
+  ) STRICT;
+  CREATE TABLE plan_versions (
+    study TEXT NOT NULL REFERENCES studies (id),
+    version INTEGER NOT NULL,
+    plan TEXT NOT NULL,
+    since REAL NOT NULL,
+    PRIMARY KEY (study, version)
   ) STRICT;
   CREATE TABLE participants (
     study TEXT NOT NULL REFERENCES studies (id),
@@ -23,6 +28,8 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
     motion_consent INTEGER CHECK (motion_consent IN (0, 1)),
     progress TEXT,
     progress_at REAL,
+    invitation TEXT,
+    plan_version INTEGER,
     PRIMARY KEY (study, participant)
   ) STRICT;
   CREATE TABLE records (
@@ -32,6 +39,7 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
     id TEXT NOT NULL,
     record TEXT NOT NULL,
     received_at REAL NOT NULL,
+    author TEXT NOT NULL CHECK (author IN ('participant', 'experimenter')),
     UNIQUE (study, participant, id),
     FOREIGN KEY (study, participant) REFERENCES participants (study, participant)
   ) STRICT;
@@ -61,36 +69,7 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
     motion_files INTEGER NOT NULL,
     at REAL NOT NULL
   ) STRICT;
-  `,
-  // Earlier versions had places without invitations; each gets one.
-  (database) => {
-    database.exec('ALTER TABLE participants ADD COLUMN invitation TEXT');
-    const places = database.prepare('SELECT study, participant FROM participants WHERE withdrawn = 0').all();
-    const invite = database.prepare('UPDATE participants SET invitation = ? WHERE study = ? AND participant = ?');
-    for (const { study, participant } of places as { study: string; participant: string }[]) {
-      invite.run(newCode(), study, participant);
-    }
-  },
-  `CREATE TABLE software (number INTEGER PRIMARY KEY, software TEXT NOT NULL, since REAL NOT NULL) STRICT;`,
-  // Earlier versions had one plan per study, which becomes version 1 for all who have begun.
-  `
-  CREATE TABLE plan_versions (
-    study TEXT NOT NULL REFERENCES studies (id),
-    version INTEGER NOT NULL,
-    plan TEXT NOT NULL,
-    since REAL NOT NULL,
-    PRIMARY KEY (study, version)
-  ) STRICT;
-  INSERT INTO plan_versions SELECT id, 1, plan, created_at FROM studies;
-  ALTER TABLE studies DROP COLUMN plan;
-  ALTER TABLE participants ADD COLUMN plan_version INTEGER;
-  UPDATE participants SET plan_version = 1 WHERE token_hash IS NOT NULL OR withdrawal_hash IS NOT NULL OR withdrawn = 1
-    OR EXISTS (SELECT 1 FROM records WHERE records.study = participants.study AND records.participant = participants.participant);
-  `,
-  // Earlier versions stored only of the experimenter's remarks with whose token they came.
-  `
-  ALTER TABLE records ADD COLUMN author TEXT CHECK (author IN ('participant', 'experimenter'));
-  UPDATE records SET author = 'experimenter' WHERE id LIKE 'experimenter-%';
+  CREATE TABLE software (number INTEGER PRIMARY KEY, software TEXT NOT NULL, since REAL NOT NULL) STRICT;
   `,
 ];
 
@@ -121,10 +100,6 @@ export function migrate(database: DatabaseSyncInstance): void {
     );
   }
   for (let next = version; next < migrations.length; next++) {
-    const migration = migrations[next] as (typeof migrations)[number];
-    database.exec('BEGIN IMMEDIATE');
-    if (typeof migration === 'string') database.exec(migration);
-    else migration(database);
-    database.exec(`PRAGMA user_version = ${next + 1}; COMMIT`);
+    database.exec(`BEGIN IMMEDIATE; ${migrations[next]} PRAGMA user_version = ${next + 1}; COMMIT`);
   }
 }

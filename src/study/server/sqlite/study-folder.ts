@@ -79,30 +79,23 @@ function remedyOf(error: unknown, directory: string): string | null {
   if (error instanceof DatabaseProblem) return `${file} ${error.message}`;
   if (error instanceof Rejection)
     return `${file} cannot be written: ${reason}. Repair that, then start the server again.`;
-  const { code } = (error ?? {}) as NodeJS.ErrnoException;
-  if (code === 'ENOSPC' || code === 'EDQUOT') {
-    return `The disk with ${directory} is full (${reason}). Make room, then start the server again.`;
-  }
+  const { code = '' } = (error ?? {}) as NodeJS.ErrnoException;
+  const sqlite = (sqliteCodeOf(error) ?? 0) & 0xff;
   if (code === 'EMFILE' || code === 'ENFILE') {
     return `The server may not open enough files (${reason}). Raise the limit: ulimit -n 1024.`;
   }
-  if (typeof code === 'string' && /^E[A-Z]+$/.test(code)) {
-    return `The folder ${directory} cannot be used (${reason}). Give the account of the server the right to write there, or name another folder with --studies.`;
+  if (code === 'ENOSPC' || code === 'EDQUOT' || sqlite === 13) {
+    return `The disk with ${directory} is full (${reason}). Make room, then start the server again.`;
   }
-  const sqlite = sqliteCodeOf(error);
-  if (sqlite === null) return null;
-  switch (sqlite & 0xff) {
-    case 5:
-    case 6:
-      return `${file} is locked by another program (${reason}). End that program, then start the server again.`;
-    case 13:
-      return `The disk with ${file} is full (${reason}). Make room, then start the server again.`;
-    case 11:
-    case 26:
-      return `${file} is damaged or not a database (${reason}). Restore a copy, or move it away to start with an empty one; "sqlite3 ${file} .recover" reads what can still be read.`;
-    default:
-      return `${file} cannot be used (${reason}). Give the account of the server the right to write to it and to its folder, or name another folder with --studies.`;
+  if (sqlite === 5 || sqlite === 6) {
+    return `${file} is locked by another program (${reason}). End that program, then start the server again.`;
   }
+  if (sqlite === 11 || sqlite === 26) {
+    return `${file} is damaged or not a database (${reason}). Restore a copy, or move it away to start with an empty one; "sqlite3 ${file} .recover" reads what can still be read.`;
+  }
+  if (sqlite === 0 && !/^E[A-Z]+$/.test(code)) return null;
+  const what = sqlite === 0 ? `The folder ${directory}` : file;
+  return `${what} cannot be used (${reason}). Give the account of the server the right to write there, or name another folder with --studies.`;
 }
 
 export interface StudyFolderOptions {

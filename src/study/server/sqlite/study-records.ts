@@ -21,14 +21,13 @@ const remarkPrefix = 'experimenter-';
 interface RecordRow {
   /** The record as JSON. */
   readonly record: string;
-  /** null: stored by an earlier version. */
-  readonly author: RecordAuthor | null;
+  readonly author: RecordAuthor;
   readonly received_at: number;
 }
 
 /** Returns a record as JSON, with the fields that the server adds. */
 function storedJson({ record, author, received_at }: RecordRow): string {
-  const added = JSON.stringify({ ...(author && { author }), receivedAt: received_at });
+  const added = JSON.stringify({ author, receivedAt: received_at });
   return `${record.slice(0, -1)},${added.slice(1)}`;
 }
 

@@ -1,9 +1,9 @@
+import type { Software } from 'threepoint-http';
 import { scheduleFor } from '../../model/plan/schedule';
 import { currentStep, remainingSeconds, resumed, sinceReport } from '../../model/progress/progress';
 import type { ParticipantState, PlanVersion } from '../../model/progress/study-api';
-import type { StoredStudy } from '../study-storage';
+import type { ServedSoftware, SoftwareStorage, StoredStudy } from '../study-storage';
 import { StudyDeletion } from './deletion';
-import { StudySoftware } from './software';
 import { StudyCommands } from './study-commands';
 import { type DatabaseOptions, StudyDatabase } from './study-database';
 import { StudyMotion } from './study-motion';
@@ -31,19 +31,43 @@ function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number,
       kind: currentStep(schedule, progress).kind,
       running: progress.running,
       paused: progress.paused,
-      unwell: progress.unwell ?? false,
-      waiting: progress.waiting ?? false,
-      stopped: progress.stopped ?? false,
+      unwell: progress.unwell,
+      waiting: progress.waiting,
+      stopped: progress.stopped,
       remainingSeconds: remainingSeconds(schedule, progress, now),
       silence,
     },
   };
 }
 
+class StudySoftware implements SoftwareStorage {
+  readonly #database: StudyDatabase;
+
+  constructor(database: StudyDatabase) {
+    this.#database = database;
+  }
+
+  note(software: Software, at: number): void {
+    const text = JSON.stringify(software);
+    const last = this.#database.get<{ software: string }>('SELECT software FROM software ORDER BY number DESC LIMIT 1');
+    if (last?.software === text) return;
+    this.#database.transaction(() => {
+      this.#database.run('INSERT INTO software (software, since) VALUES (?, ?)', text, at);
+    });
+  }
+
+  since(at: number): readonly ServedSoftware[] {
+    const all = this.#database
+      .all<{ software: string; since: number }>('SELECT software, since FROM software ORDER BY number')
+      .map(({ software, since }) => ({ since, ...(JSON.parse(software) as Software) }));
+    return all.filter((_, index) => (all[index + 1]?.since ?? Number.POSITIVE_INFINITY) > at);
+  }
+}
+
 /** The size beyond which writes are refused as "full" [bytes], to leave room for the rest of the machine. */
 const maxStoredBytes = 16 * 2 ** 30;
 
-/** Opens the database in this file, creates it if it is missing, and migrates it; `readOnly` opens an existing one. */
+/** Opens the database in this file, creates it if missing, and brings it up to date; `readOnly`: an existing one. */
 export function openStudyStore(
   file: string,
   { maxBytes = maxStoredBytes, readOnly = false }: Partial<DatabaseOptions> = {},

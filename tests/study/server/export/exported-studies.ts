@@ -1,9 +1,7 @@
 import { checkedPlan, type StudyPlan } from '../../../../src/study/model/plan/plan';
 import type { ExportContent } from '../../../../src/study/server/export/export-zip';
-import { answerModelWith } from '../../../../src/study/simulation/answer-model';
-import { statedPerformanceModel } from '../../../../src/study/simulation/performance-model';
-import { simulatedPlan, simulateStudy } from '../../../../src/study/simulation/simulate-study';
-import { examplePlan, paperPlan } from '../../model/studies';
+import { simulatedPlan } from '../../../../src/study/simulation/simulate-study';
+import { examplePlan, paperPlan, simulatedRecords } from '../../model/studies';
 import { now, testSoftware } from '../running-studies';
 
 const late = (latencyMs: number) =>
@@ -66,8 +64,8 @@ export const designs: Readonly<Record<string, StudyPlan>> = {
 export function exportedStudy(plan: StudyPlan, seed = 7): ExportContent {
   const simulated = checkedPlan(simulatedPlan(plan));
   const last = simulated.conditions.at(-1)?.id ?? '';
-  const models = { answers: answerModelWith({ [last]: 0.6 }), performance: statedPerformanceModel };
-  const records = simulateStudy(simulated, models, seed, now).flatMap((one) => one.records);
+  const effects = { answers: { [last]: 0.6 }, scores: {} };
+  const records = simulatedRecords(simulated, effects, seed);
   return {
     plan: simulated,
     simulated: true,

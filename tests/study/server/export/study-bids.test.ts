@@ -3,12 +3,11 @@ import { mkdirSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { parseRecording, type Recording } from 'threepoint/core';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { scheduleFor } from '../../../../src/study/model/plan/schedule';
 import type { StudyRecord } from '../../../../src/study/model/records/study-record';
 import { bidsDataset } from '../../../../src/study/server/export/bids';
 import { installed } from '../../../server/installed';
 import { directoryWith } from '../../../temporary-directory';
-import { paperPlan, session } from '../../model/studies';
+import { completed, paperPlan } from '../../model/studies';
 import { epoch, frameSeconds, playedRound, type RoundTroubles } from '../../participant/played-round';
 
 const troubles: readonly RoundTroubles[] = [
@@ -35,12 +34,8 @@ function playedStudy() {
   const rounds: RecordedRound[] = [];
   const motion: { participant: string; trial: string; text: string }[] = [];
   const records = ['P01', 'P02'].flatMap((participant, person) => {
-    const schedule = scheduleFor(paperPlan(), participant);
-    const one = session(schedule);
-    one.tell({ type: 'consent', version: schedule.consentVersion, motion: true });
-    one.doUntil(({ kind }) => kind === 'end');
     let number = 0;
-    return one.records.map((record): StudyRecord => {
+    return completed(participant, { motion: true }).map((record): StudyRecord => {
       if (record.kind !== 'trial' || record.body.condition === null || record.body.place.task !== 'archery')
         return record;
       const { outcome, recording, landed, began } = playedRound(

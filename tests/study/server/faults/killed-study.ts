@@ -9,7 +9,7 @@ import { openStudyStore } from '../../../../src/study/server/sqlite/study-store'
 import { type RandomSource, randomSource } from '../../../../src/study/simulation/random-source';
 import { experimenterToken, startServer } from '../../../server/started-server';
 import { directoryWith } from '../../../temporary-directory';
-import { paperPlan, session } from '../../model/studies';
+import { completed, paperPlan } from '../../model/studies';
 import { asSent } from '../stored-studies';
 
 /** The result of the kills; empty lists: nothing was lost. */
@@ -18,7 +18,7 @@ export interface KillReport {
   /** Kills that came while a request was under way. */
   amidRequests: number;
   acknowledged: number;
-  /** Acknowledged records and recordings that a server no longer had, or had otherwise. */
+  /** Acknowledged records that a server no longer had, or had otherwise, and batches of which it had a part. */
   readonly lost: string[];
   /** Participants with records of a condition that is not theirs at this place, or two devices that held one place. */
   readonly inTwoConditions: string[];
@@ -37,7 +37,8 @@ class Device {
   token: string | null = null;
   code: string | null = null;
   withdrawn: 'no' | 'asked' | 'yes' = 'no';
-  progressStep: string | null = null;
+  /** The records that are sent together until they are acknowledged. */
+  batch: readonly StudyRecord[] = [];
   readonly #records: readonly StudyRecord[];
   #sent = 0;
 
@@ -45,10 +46,7 @@ class Device {
     this.study = plan.id;
     this.participant = participant;
     this.schedule = scheduleFor(plan, participant);
-    const one = session(this.schedule);
-    one.tell({ type: 'consent', version: plan.consent.version, motion: true });
-    one.doUntil(({ kind }) => kind === 'end');
-    this.#records = one.records;
+    this.#records = completed(participant, { plan, motion: true });
   }
 
   get finished(): boolean {
@@ -59,12 +57,16 @@ class Device {
     return `/${this.study}/participants/${this.participant}`;
   }
 
+  /** Returns the batch under way, or the next one. */
   nextBatch(random: RandomSource): readonly StudyRecord[] {
-    return this.#records.slice(this.#sent, this.#sent + 1 + Math.floor(3 * random.uniform()));
+    if (this.batch.length === 0)
+      this.batch = this.#records.slice(this.#sent, this.#sent + 1 + Math.floor(3 * random.uniform()));
+    return this.batch;
   }
 
   accepted(batch: readonly StudyRecord[]): void {
     this.#sent += batch.length;
+    this.batch = [];
     for (const record of batch) this.acknowledged.set(record.id, record);
   }
 }
@@ -124,6 +126,9 @@ function check(device: Device, store: ReturnType<typeof openStudyStore>, report:
   for (const [id, sent] of device.acknowledged) {
     if (!isDeepStrictEqual(byId.get(id), sent)) report.lost.push(`${study} ${participant} ${id}`);
   }
+  const whole = device.batch.every(({ id }) => byId.has(id));
+  if (!whole && device.batch.some(({ id }) => byId.has(id)))
+    report.lost.push(`${study} ${participant}: half of a batch`);
   for (const record of stored) {
     if (record.kind !== 'trial' || record.body.condition === null) continue;
     const { place, condition } = record.body;

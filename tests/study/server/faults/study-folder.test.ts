@@ -1,4 +1,4 @@
-import { chmodSync, existsSync, mkdirSync, renameSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
+import { chmodSync, mkdirSync, renameSync, rmSync, statSync, truncateSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { describe, expect, onTestFinished, test } from 'vitest';
@@ -7,7 +7,6 @@ import { hasFileModes, movesOpenFiles } from '../../../platform';
 import { reportFigures } from '../../../reliability/report-figures';
 import { directoryWith } from '../../../temporary-directory';
 import { paperPlan } from '../../model/studies';
-import { withoutInvitations } from '../older-databases';
 import { experimenter, servedFolder } from '../running-studies';
 
 /** Serves the studies of this folder; `add` adds a study. */
@@ -138,9 +137,8 @@ describe('a database that cannot be opened is refused with its file and what to 
   });
 
   test('when another program holds its lock, after 5 s', { tags: ['full'] }, async () => {
-    const { directory, file } = studied();
-    sql(file, withoutInvitations);
-    const other = new DatabaseSync(file);
+    const directory = directoryWith();
+    const other = new DatabaseSync(join(directory, 'studies.db'));
     onTestFinished(() => other.close());
     other.exec('BEGIN EXCLUSIVE');
     await expect(started(directory)).rejects.toThrow(
@@ -158,13 +156,6 @@ describe('a database that cannot be opened is refused with its file and what to 
     );
     other.exec('ROLLBACK');
     expect((await (await started(directory)).add('new')).status).toBe(201);
-  });
-
-  test('one of an older version is brought up to date', async () => {
-    const { directory, file } = studied();
-    sql(file, withoutInvitations);
-    expect((await (await started(directory)).add('new')).status).toBe(201);
-    expect(existsSync(file)).toBe(true);
   });
 
   test.skipIf(!hasFileModes || process.getuid?.() === 0)('when its folder may not be written', async () => {

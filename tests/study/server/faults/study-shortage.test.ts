@@ -115,6 +115,8 @@ test('a disk that fills refuses to store and to delete, but not to export', asyn
   const store = openStudyStore(file);
   onTestFinished(() => store.close());
   expect(store.records.all('paper')).toHaveLength(stored);
+  store.records.addRemark('paper', 'P01', 'there is room again', Date.now() / 1000);
+  expect(store.records.all('paper')).toHaveLength(stored + 1);
   reportFigures('study-shortage', {
     'disk full': `writes ${answer.status}, an export ${exported.status}, 0 acknowledged and lost`,
   });

@@ -13,7 +13,6 @@ const schema = v.strictObject({
   ),
 });
 
-/** One of several options. */
 export type ChoiceForm = v.InferOutput<typeof schema>;
 
 declare module '../question-kind' {

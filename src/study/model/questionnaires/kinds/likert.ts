@@ -35,7 +35,6 @@ const endsOf = ({ labels, ends: texts }: LikertForm) => ({
   high: labels?.at(-1) ?? texts?.high,
 });
 
-/** Returns the points of a Likert scale in ascending order. */
 export const likertPoints = (form: LikertForm): readonly number[] => pointsOn(scaleOf(form));
 
 export const likert: QuestionKind<LikertForm> = {

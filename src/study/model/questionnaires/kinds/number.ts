@@ -12,7 +12,6 @@ const schema = v.strictObject({
   unit: v.exactOptional(words(20)),
 });
 
-/** A number that the participant types. */
 export type NumberForm = v.InferOutput<typeof schema>;
 
 declare module '../question-kind' {

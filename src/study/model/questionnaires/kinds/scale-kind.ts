@@ -28,7 +28,6 @@ export const pointsOn = (scale: SteppedScale): readonly number[] =>
 /** The schema of the texts below the ends of a scale. */
 export const ends = v.strictObject({ low: words(60), high: words(60) });
 
-/** The texts below the ends of a scale. */
 export type Ends = v.InferOutput<typeof ends>;
 
 /** Throws a ValidationError if the ends of a range are in the wrong order. */
@@ -47,7 +46,6 @@ export function checkSteps(scale: SteppedScale, most: number, field: string): vo
   if (steps > most + 1e-6) throw new ValidationError(`${field}.step`, `expected at most ${most} steps from end to end`);
 }
 
-/** Returns the schema of a number on a scale. */
 const numberOn = (scale: SteppedScale) => {
   const { from, to, step } = scale;
   return v.custom<number>(

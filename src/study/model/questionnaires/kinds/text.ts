@@ -4,7 +4,6 @@ import type { QuestionKind } from '../question-kind';
 
 const schema = v.strictObject({ kind: v.literal('text'), maxLength: integerBetween(1, 1000) });
 
-/** Free text that the participant types. */
 export type TextForm = v.InferOutput<typeof schema>;
 
 declare module '../question-kind' {

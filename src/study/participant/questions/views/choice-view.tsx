@@ -4,11 +4,9 @@ import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';
 import { Radio, type ScreenPoint } from './scale-parts';
 
-/** A list of options. */
 export interface ChoiceField {
   readonly kind: 'choice';
   readonly points: readonly ScreenPoint<string>[];
-  /** null: none yet. */
   readonly answer: string | null;
   choose(value: string): void;
 }

@@ -4,13 +4,10 @@ import type { QuestionView } from '../question-view';
 import { inner, margin } from '../sheet-target';
 import { Ends, maxNumberedPoints, paintEnds, Radio, type ScreenEnds, type ScreenPoint } from './scale-parts';
 
-/** A row of points. */
 export interface LikertField {
   readonly kind: 'likert';
   readonly points: readonly ScreenPoint<number>[];
-  /** Texts below the ends; null: none. */
   readonly ends: ScreenEnds | null;
-  /** null: none yet. */
   readonly answer: number | null;
   choose(value: number): void;
 }

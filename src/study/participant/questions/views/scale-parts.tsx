@@ -2,14 +2,12 @@ import type { ComponentChildren, InputHTMLAttributes } from 'preact';
 import { vrColors, vrFont } from 'threepoint-ui/vr';
 import { inner, margin, width } from '../sheet-target';
 
-/** A point that can be chosen. */
 export interface ScreenPoint<Value> {
   readonly value: Value;
   /** Its label; empty: the value alone is shown. */
   readonly label: string;
 }
 
-/** The texts below the ends of a scale. */
 export interface ScreenEnds {
   readonly low: string;
   readonly high: string;

@@ -5,13 +5,11 @@ import type { QuestionView } from '../question-view';
 import { inner, margin, type Target, width } from '../sheet-target';
 import { Ends, paintEnds, type ScreenEnds } from './scale-parts';
 
-/** A line without points. */
 export interface SliderField {
   readonly kind: 'slider';
   /** Every value that the line distinguishes, in ascending order. */
   readonly values: readonly number[];
   readonly ends: ScreenEnds;
-  /** null: none yet. */
   readonly answer: number | null;
   choose(value: number): void;
 }

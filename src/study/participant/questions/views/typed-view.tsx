@@ -6,7 +6,6 @@ import type { TextForm } from '../../../model/questionnaires/kinds/text';
 import type { FieldContext, QuestionView, SheetView } from '../question-view';
 import { inner, margin, type Target, width } from '../sheet-target';
 
-/** A field in which the participant types. */
 export interface TypedField<Kind extends 'number' | 'text' = 'number' | 'text'> {
   readonly kind: Kind;
   /** The text so far, an answer or not. */
