@@ -8,7 +8,6 @@ import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackedPoints, TrackingGate, validFrames } from '../core/tracking/tracking-gate';
-import { type AfterFrame, createAfterFrame } from './after-frame';
 import { assertOptions, optionNames } from './assert-options';
 import { EstimatorSelector } from './estimator-selector';
 import { HeightEstimator } from './height-estimator';
@@ -132,7 +131,8 @@ export class BodySolver {
   readonly #points = new TrackedPoints((point, tracked) =>
     tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point),
   );
-  #afterFrame: AfterFrame | null = null;
+  /** Runs `#sendRequest` after a frame: a message is the earliest task that a page can schedule. */
+  #afterFrame: MessageChannel | null = null;
   #calibration: Calibration;
   #userCalibration: Calibration;
   #given: boolean;
@@ -340,7 +340,8 @@ export class BodySolver {
     this.#events = {};
     this.#request = null;
     this.#pose = null;
-    this.#afterFrame?.close();
+    // An open port keeps a Node process running.
+    this.#afterFrame?.port1.close();
     return this.#choice.dispose();
   }
 
@@ -392,7 +393,10 @@ export class BodySolver {
     const waits = this.#request !== null;
     this.#request = request;
     if (waits) return;
-    this.#afterFrame ??= createAfterFrame();
-    this.#afterFrame.schedule(this.#sendRequest);
+    if (!this.#afterFrame) {
+      this.#afterFrame = new MessageChannel();
+      this.#afterFrame.port1.onmessage = this.#sendRequest;
+    }
+    this.#afterFrame.port2.postMessage(null);
   }
 }
