@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { createEstimator, estimatedJoints, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { createEstimator, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -17,7 +17,7 @@ import {
 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { swivelAngle } from '../../../../bench/evaluate/measures';
-import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, type Joints, poseOf } from './drawn';
 import { standing, wristOrientation } from './moving-person';
@@ -68,9 +68,7 @@ describe('arms', () => {
         const frame = standing(calibration, hip.left, vec3(wrist.x, wrist.y, wrist.z));
         const upright = bodyOf(frame);
         const chest = at(upright, 'chest');
-        const joints = Object.fromEntries(
-          estimatedJoints.map((joint) => [joint, at(upright, joint)]),
-        ) as JointPositions;
+        const joints = mapJoints((joint) => at(upright, joint));
         const estimate = { ...joints, rightLowerArm: add(chest, inside as Vec3) };
         const solved = fitted(calibration)(completedFrame(frame, calibration), estimate, 0);
         const elbow = subtract(at(solved, 'rightLowerArm'), at(solved, 'chest'));
@@ -89,7 +87,7 @@ describe('arms', () => {
     const frame = standing(calibration, hip.left, ahead.right);
     const completed = completedFrame(frame, calibration);
     const upright = bodyOf(frame);
-    const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
+    const joints = mapJoints((joint) => at(upright, joint));
     const shoulder = joints.rightUpperArm;
     const wrist = ahead.right;
     const middle = vec3((shoulder.x + wrist.x) / 2, (shoulder.y + wrist.y) / 2, (shoulder.z + wrist.z) / 2);

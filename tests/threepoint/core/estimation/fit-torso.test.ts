@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { createEstimator, estimatedJoints, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { createEstimator, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -15,6 +15,7 @@ import {
 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
+import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, poseOf } from './drawn';
 import { standing, transformFrame } from './moving-person';
@@ -41,9 +42,7 @@ describe('hips under a chest that is too low for them to hang', () => {
           },
           calibration,
         );
-        const estimated = Object.fromEntries(
-          estimatedJoints.map((joint) => [joint, lowered(joints[joint].position)]),
-        ) as Record<(typeof estimatedJoints)[number], Vec3>;
+        const estimated = mapJoints((joint) => lowered(joints[joint].position));
         const aside = vec3(Math.sin(angle), 0, Math.cos(angle));
         const fitBody = fitted(calibration);
         const hips: Vec3[] = [];
@@ -69,9 +68,7 @@ describe('hips that are estimated almost at the chest joint', () => {
         const elsewhere = { position: vec3(-1, 0, 2), orientation: fromAxisAngle(up, yaw) };
         const frame = transformFrame(elsewhere, standing(calibration, hip.left, hip.right));
         const body = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
-        const estimated = Object.fromEntries(
-          estimatedJoints.map((joint) => [joint, copyVec3(body[joint].position)]),
-        ) as Record<(typeof estimatedJoints)[number], Vec3>;
+        const estimated = mapJoints((joint) => copyVec3(body[joint].position));
         const seen = completedFrame(
           { head: frame.head, leftHand: frame.leftHand!, rightHand: frame.rightHand! },
           calibration,
@@ -98,10 +95,7 @@ describe('hips that are estimated almost at the chest joint', () => {
 describe('an arm that is stretched out', () => {
   const frame = standing(calibration, hip.left, hip.right);
   const body = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
-  const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, body[joint].position])) as Record<
-    (typeof estimatedJoints)[number],
-    Vec3
-  >;
+  const joints = mapJoints((joint) => body[joint].position);
   const shoulder = joints.rightUpperArm;
   const { upper, lower } = armBones(skeleton);
   const twoHands = { head: frame.head, leftHand: frame.leftHand!, rightHand: frame.rightHand! };

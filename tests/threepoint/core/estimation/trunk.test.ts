@@ -1,8 +1,8 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { estimatedJoints, type JointName } from '../../../../src/threepoint/core/body/joints';
+import type { JointName } from '../../../../src/threepoint/core/body/joints';
 import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { limitJoints, makeLimitJointsState } from '../../../../src/threepoint/core/estimation/limit-joints';
 import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
 import { angleBetween, identity, rotate } from '../../../../src/threepoint/core/math/quat';
@@ -94,7 +94,7 @@ describe('the trunk', () => {
 
   test('an estimate that turns about under a head on its side turns no person about', () => {
     const upright = bodyOf(standing(calibration, ahead.left, ahead.right));
-    const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
+    const joints = mapJoints((joint) => at(upright, joint));
     const bowed = { ...joints, hips: add(joints.hips, vec3(0, 0, 0.3)), chest: add(joints.chest, vec3(0, 0, 0.15)) };
     const bent = { ...joints, hips: add(joints.hips, vec3(0, 0, -0.3)), chest: add(joints.chest, vec3(0, 0, -0.15)) };
     const longestStep = (roll: number): number => {
