@@ -21,43 +21,46 @@ import { warnAfterDispose } from './warnings';
 export type CalibrationSource = 'given' | 'headset' | 'stood-taller' | 'stand-in' | 'default';
 
 /**
- * Callbacks of a body. Each is called from within one of the body's methods, or when a network has loaded; never from
- * the constructor.
+ * The events of a body with their data. Each is reported from within one of the body's methods, or when a network has
+ * loaded; never from the constructor.
  */
 export interface BodyEvents {
   /** The measures in force have changed, from the next frame on. */
-  calibrated?(calibration: Calibration, source: CalibrationSource): void;
+  readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
   /**
-   * The user stands `difference` [m] taller than the given measures, which stay in force. Called once for each
+   * The user stands `difference` [m] taller than the given measures, which stay in force. Reported once for each
    * calibration.
    */
-  heightmismatch?(difference: number): void;
+  readonly heightmismatch: { readonly difference: number };
   /**
    * The estimator's network failed or could not be loaded, or 'device' is selected and the device reports no body:
    * inverse kinematics draws instead.
    */
-  fallback?(estimator: EstimatorName, reason: string): void;
+  readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
   /** `estimator`, `provider` or `unavailableEstimators` has changed. */
-  estimatorchange?(): void;
+  readonly estimatorchange: object;
   /** The body was reset and continues elsewhere. Do not interpolate between its last pose and the next. */
-  discontinuity?(): void;
+  readonly discontinuity: object;
   /**
    * The point is no longer tracked. Without a head the body keeps its pose; the arm of a lost or guessed hand sinks to
    * rest.
    */
-  trackinglost?(point: TrackedPoint): void;
+  readonly trackinglost: { readonly point: TrackedPoint };
   /** The point is tracked, for the first time or again. */
-  trackingfound?(point: TrackedPoint): void;
+  readonly trackingfound: { readonly point: TrackedPoint };
   /**
    * The joint of a tracker beyond head and hands has been out of the body's reach for a second. The tracker is worn
-   * elsewhere, or the measures are another person's. Called once until the body reaches it.
+   * elsewhere, or the measures are another person's. Reported once until the body reaches it.
    */
-  trackermismatch?(mismatch: TrackerMismatch): void;
+  readonly trackermismatch: TrackerMismatch;
   /** A session starts: frames of its user follow. */
-  sessionstart?(): void;
+  readonly sessionstart: object;
   /** The session is over: `pose` is null. Stop showing the last pose to others. */
-  sessionend?(): void;
+  readonly sessionend: object;
 }
+
+/** Callbacks of a body's events. */
+export type BodyCallbacks = { readonly [Name in keyof BodyEvents]?: (event: BodyEvents[Name]) => void };
 
 export interface BodySolverOptions {
   /** The estimator. Default: 'learned', replaced by inverse kinematics until its weights have loaded. */
@@ -83,7 +86,7 @@ export interface BodySolverOptions {
   readonly clock?: Pick<PageClock, 'tick' | 'paused'>;
   /** Measures the work that follows a frame. */
   readonly profiler?: InferenceProfiler;
-  readonly events?: BodyEvents;
+  readonly events?: BodyCallbacks;
 }
 
 export const bodyOptions = optionNames<BodySolverOptions>({
@@ -97,7 +100,7 @@ export const bodyOptions = optionNames<BodySolverOptions>({
   events: true,
 });
 
-const eventNames = optionNames<BodyEvents>({
+export const eventNames = optionNames<BodyEvents>({
   calibrated: true,
   heightmismatch: true,
   fallback: true,
@@ -123,13 +126,13 @@ const eventNames = optionNames<BodyEvents>({
 export class BodySolver {
   readonly #choice: EstimatorSelector;
   readonly #height: HeightEstimator;
-  #events: BodyEvents;
+  #events: BodyCallbacks;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
   readonly #pinning: Pinning | undefined;
   readonly #gate = new TrackingGate();
   readonly #points = new TrackedPoints((point, tracked) =>
-    tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point),
+    this.#events[tracked ? 'trackingfound' : 'trackinglost']?.({ point }),
   );
   /** Runs `#sendRequest` after a frame: a message is the earliest task that a page can schedule. */
   #afterFrame: MessageChannel | null = null;
@@ -173,15 +176,15 @@ export class BodySolver {
       calibration: this.#calibration,
       create: (name, body, regressor) => createEstimator(name, body, regressor, { pinning }),
       load: profiler ? async (name) => withProfiler(await networks(name), profiler) : networks,
-      onChange: () => this.#events.estimatorchange?.(),
-      onUnavailable: (name, reason) => this.#events.fallback?.(name, reason),
+      onChange: () => this.#events.estimatorchange?.({}),
+      onUnavailable: (name, reason) => this.#events.fallback?.({ estimator: name, reason }),
     });
     this.#height = new HeightEstimator({
       calibration: () => this.#userCalibration,
       isCalibrated: () => this.#given,
       autoGrow: options.autoGrow ?? true,
       onMeasured: (measured, source) => this.#setUserCalibration(measured, source),
-      onMismatch: (difference) => this.#events.heightmismatch?.(difference),
+      onMismatch: (difference) => this.#events.heightmismatch?.({ difference }),
     });
   }
 
@@ -248,7 +251,7 @@ export class BodySolver {
     this.#inSession = true;
     this.#height.startSession();
     this.discontinuity();
-    this.#events.sessionstart?.();
+    this.#events.sessionstart?.({});
   }
 
   /**
@@ -262,7 +265,7 @@ export class BodySolver {
     this.#pose = null;
     this.#points.reset();
     this.#choice.reset();
-    if (ends) this.#events.sessionend?.();
+    if (ends) this.#events.sessionend?.({});
   }
 
   /** Resets the body because the floor lies elsewhere from the next frame on (recentre, teleport, pause). */
@@ -271,7 +274,7 @@ export class BodySolver {
     this.#request = null;
     this.#choice.reset();
     this.#height.reset();
-    this.#events.discontinuity?.();
+    this.#events.discontinuity?.({});
   }
 
   /**
@@ -385,7 +388,7 @@ export class BodySolver {
     if (calibration === this.#calibration) return;
     this.#calibration = calibration;
     this.#choice.calibrate(calibration);
-    this.#events.calibrated?.(calibration, source);
+    this.#events.calibrated?.({ calibration, source });
   }
 
   /** Sends the request to the network after the frame; a newer request replaces a pending one. */

@@ -80,16 +80,6 @@ describe('the estimator that draws', () => {
     expect(choice.current).not.toBe(learned);
   });
 
-  test('a network that cannot be loaded leaves inverse kinematics, with the reason', async () => {
-    const { choice, faults } = choiceThat(async () => {
-      throw new Error('learned.onnx: 404');
-    });
-    await choice.setEstimator('learned');
-    expect([choice.selected, choice.current.name]).toEqual(['ik', 'ik']);
-    expect(choice.unavailable.learned).toBe('learned.onnx: 404');
-    expect(faults).toEqual(['learned: learned.onnx: 404']);
-  });
-
   test('a network that cannot be loaded leaves inverse kinematics after another network, too', async () => {
     const { choice, changes } = choiceThat(async (name) => {
       if (name === 'paper') throw new Error('paper.onnx: 404');

@@ -56,7 +56,7 @@ async function bodyBy(estimator: EstimatorName) {
     estimator,
     calibration,
     networks: async () => openPlainModel(),
-    events: { fallback: (name, reason) => faults.push(`${name} ${reason}`) },
+    events: { fallback: ({ estimator, reason }) => faults.push(`${estimator} ${reason}`) },
   });
   await body.setEstimator(estimator);
   return { body, faults };
@@ -89,8 +89,8 @@ test('a point that is no place is lost for its frame, and found again', async ()
     estimator: 'ik',
     calibration,
     events: {
-      trackinglost: (point) => reported.push(`lost ${point}`),
-      trackingfound: (point) => reported.push(`found ${point}`),
+      trackinglost: ({ point }) => reported.push(`lost ${point}`),
+      trackingfound: ({ point }) => reported.push(`found ${point}`),
     },
   });
   body.update(at(0));

@@ -31,7 +31,7 @@ test.each(['paper', 'learned'] as const)(
       estimator: name,
       calibration: defaultCalibration,
       networks: onnxNetworks({ modelUrl: (network) => `${models}/${network}.json` }),
-      events: { fallback: (_, reason) => reported.push(reason) },
+      events: { fallback: ({ reason }) => reported.push(reason) },
     });
     await body.setEstimator(name);
     expect(body.estimator).toBe(name);
