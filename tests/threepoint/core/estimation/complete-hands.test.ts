@@ -265,12 +265,6 @@ describe('a hand that returns', () => {
     expect(confidence.at(-1)).toBe(1);
   });
 
-  test.each([0.05, 0.2, 0.35, 1])('after %s s draws its arm back without a jump', (seconds) => {
-    const arms = drawn(lostFor(seconds), seconds + 1);
-    expect(largestDrawnStep(arms)).toBeLessThan(0.05);
-    expect(distance(arms.at(-1)!.wrist, returned)).toBeLessThan(1e-6);
-  });
-
   test('is drawn there within 200 ms when it was not far', () => {
     const near = add(reach, vec3(0.1, 0.05, 0));
     // It is seen again in the frame at 0.1 s.
