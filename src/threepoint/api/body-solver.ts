@@ -179,13 +179,7 @@ export class BodySolver {
       onChange: () => this.#events.estimatorchange?.({}),
       onUnavailable: (name, reason) => this.#events.fallback?.({ estimator: name, reason }),
     });
-    this.#height = new HeightEstimator({
-      calibration: () => this.#userCalibration,
-      isCalibrated: () => this.#given,
-      autoGrow: options.autoGrow ?? true,
-      onMeasured: (measured, source) => this.#setUserCalibration(measured, source),
-      onMismatch: (difference) => this.#events.heightmismatch?.({ difference }),
-    });
+    this.#height = new HeightEstimator(options.autoGrow ?? true);
   }
 
   /**
@@ -315,7 +309,7 @@ export class BodySolver {
       return this.#pose;
     }
     if (!this.#isDrivenBy(standIn)) this.#changeDriver(standIn && this.#own(standIn));
-    if (standIn === null) this.#height.observe(frame);
+    if (standIn === null) this.#observeHeight(frame);
     const { pose, request } = this.#choice.current.update(frame);
     this.#pose = pose;
     if (request) this.#scheduleRequest(request);
@@ -359,6 +353,13 @@ export class BodySolver {
     assertCalibration(calibration);
     this.#pinning?.assertOffsets(calibration);
     return { ...calibration };
+  }
+
+  #observeHeight(frame: TrackingFrame): void {
+    const change = this.#height.observe(frame, this.#userCalibration, this.#given);
+    if (!change) return;
+    if ('difference' in change) this.#events.heightmismatch?.(change);
+    else this.#setUserCalibration(change.calibration, change.source);
   }
 
   /**
