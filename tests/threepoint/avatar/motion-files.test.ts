@@ -1,4 +1,3 @@
-import { deflateSync } from 'node:zlib';
 import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
 import { expect, test } from 'vitest';
 import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
@@ -10,7 +9,7 @@ import { truthJoints } from '../../../src/threepoint/core/mocap/skeleton-map';
 import { finishWork } from '../../../src/threepoint/core/motion/work';
 import { type BoneTurns, builtFbx } from './built-fbx';
 import { rigJoints } from './built-rig';
-import { fbxBinary, fbxText } from './fbx-file';
+import { fbxBinary, fbxPacked, fbxText } from './fbx-file';
 import { changed, type GltfJson, glbOf, partsOf } from './glb';
 import { mixamo } from './rig-namings';
 
@@ -58,7 +57,7 @@ async function expectTruth(bytes: ArrayBuffer, name: string): Promise<void> {
 
 test.each([
   ['text', fbxText(builtFbx(options))],
-  ['bytes', fbxBinary(builtFbx(options), deflateSync)],
+  ['bytes', fbxPacked(builtFbx(options))],
   ['bones alone', fbxBinary(builtFbx({ ...options, bare: true }))],
 ])('motion in FBX as %s is read as it was written', async (_, bytes) => {
   await expectTruth(bytes, 'wave.fbx');
