@@ -8,13 +8,10 @@ import {
   estimatorNames,
   type PoseEstimator,
 } from '../../../src/threepoint/core/estimation/pose-estimator';
+import { tracked } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 
-const head = {
-  position: { x: 0, y: 1.6, z: 0 },
-  orientation: { x: 0, y: 0, z: 0, w: 1 },
-  tracking: 'tracked',
-} as const;
+const head = tracked({ x: 0, y: 1.6, z: 0 });
 
 /** A stand-in that draws nothing; its network is at fault when the regressor's provider says so. */
 function estimatorOf(name: EstimatorName, _: unknown, network: PoseRegressor | null): PoseEstimator {

@@ -15,16 +15,12 @@ import { add, copyVec3, distance, length, up, type Vec3, vec3 } from '../../../.
 import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
+import { tracked } from './moving-person';
 
 const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 const body = chestSpaceBody(calibration);
 const skeleton = skeletonFromCalibration(calibration);
 const armLength = length(skeleton.restOffsets.rightLowerArm) + length(skeleton.restOffsets.rightHand);
-const tracked = (position: Vec3, orientation = identity): TrackedPose => ({
-  position,
-  orientation,
-  tracking: 'tracked',
-});
 const reach = vec3(0.2, 1.3, -0.45);
 
 const frame = (time: number, rightHand: TrackedPose | null, yaw = 0): TrackingFrame => ({

@@ -4,7 +4,7 @@ import type { Calibration } from '../../../../src/threepoint/core/body/calibrati
 import { jointNames } from '../../../../src/threepoint/core/body/joints';
 import { chestSpaceBody, sideSign } from '../../../../src/threepoint/core/body/skeleton';
 import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import { fromAxisAngle, identity, multiply, rotate } from '../../../../src/threepoint/core/math/quat';
 import type { Side } from '../../../../src/threepoint/core/math/side';
 import {
   add,
@@ -22,6 +22,7 @@ import { evenly, rotation, standpoint } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 import { apart, bodies, calibrationOf, jointsOf, openSubject } from './contract-subjects';
 import { type Joints, show } from './drawn';
+import { tracked } from './moving-person';
 
 /** Seconds from one frame to the next, and the frames of two seconds. */
 const rate = 1 / 72;
@@ -43,8 +44,6 @@ const maxHandErrorOfPaper = 0.1;
  * A joint of a person whose hands move slowly goes at most this much further [m] in a frame than three times the hands.
  */
 const maxBeyond = 0.002;
-
-const tracked = (position: Vec3, orientation: Quat): TrackedPose => ({ position, orientation, tracking: 'tracked' });
 
 /** A person at rest: the same frame at any time. */
 interface StillPerson {

@@ -18,13 +18,8 @@ import {
 } from '../../../../src/threepoint/core/tracking/guided-calibration';
 import type { BodyTrackers, TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, seed, standpoint } from '../arbitraries';
+import { tracked } from '../estimation/moving-person';
 import { trackersOn, wornOffsets } from '../estimation/tracked-body';
-
-const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
-  position,
-  orientation,
-  tracking: 'tracked',
-});
 
 const atRest = (skeleton: Skeleton): JointPoses =>
   forwardKinematics(skeleton, { ...makeUpperBodyPose(), hipsPosition: skeleton.restOffsets.hips });
@@ -51,10 +46,10 @@ function stretched(
       sideways: vec3(sigma * arm, 0, 0),
       'down and out': vec3(sigma * arm * Math.SQRT1_2, -arm * Math.SQRT1_2, 0),
     };
-    return pose(add(shoulder, along[direction]));
+    return tracked(add(shoulder, along[direction]));
   };
   return {
-    head: pose(vec3(0, calibration.eyeHeight, 0)),
+    head: tracked(vec3(0, calibration.eyeHeight, 0)),
     leftHand: wrist('left'),
     rightHand: wrist('right'),
   };
@@ -94,7 +89,7 @@ describe('the guided calibration', () => {
           const still = stretched(calibration, direction);
           const moved = (p: TrackedPose): TrackedPose => {
             const { position, orientation } = transformPose(there, p as Pose<Frame>);
-            return pose(position, orientation);
+            return tracked(position, orientation);
           };
           const state = guide(() => ({
             head: moved(still.head),
@@ -115,7 +110,7 @@ describe('the guided calibration', () => {
     const still = stretched(person, 'forward');
     const jitter = (seconds: number) => Math.round(seconds * 72) % 24 === 5;
     const jittered = guide((seconds) =>
-      jitter(seconds) ? { ...still, head: pose(vec3(0, 1.63, 0)), rightHand: pose(vec3(0.6, 1, -0.4)) } : still,
+      jitter(seconds) ? { ...still, head: tracked(vec3(0, 1.63, 0)), rightHand: tracked(vec3(0.6, 1, -0.4)) } : still,
     );
     const { eyeHeight, armSpan } = measured(jittered);
     expect(eyeHeight).toBeCloseTo(1.6, 6);
@@ -148,7 +143,11 @@ describe('the guided calibration', () => {
   });
 
   test.each<[string, (seconds: number) => Omit<TrackingFrame, 'time'>, RegExp]>([
-    ['the head moved', (s) => ({ ...stretched(person, 'forward'), head: pose(vec3(0.1 * s, 1.6, 0)) }), /head moved/],
+    [
+      'the head moved',
+      (s) => ({ ...stretched(person, 'forward'), head: tracked(vec3(0.1 * s, 1.6, 0)) }),
+      /head moved/,
+    ],
     ['no hand was seen', () => ({ ...stretched(person, 'forward'), leftHand: null, rightHand: null }), /not seen/],
     [
       'a hand was guessed by the device half of the time',
@@ -163,7 +162,7 @@ describe('the guided calibration', () => {
       'a hand waved',
       (s) => {
         const still = stretched(person, 'forward');
-        return { ...still, rightHand: pose(add(still.rightHand!.position, vec3(0, 0.2 * Math.sin(9 * s), 0))) };
+        return { ...still, rightHand: tracked(add(still.rightHand!.position, vec3(0, 0.2 * Math.sin(9 * s), 0))) };
       },
       /hands moved/,
     ],
@@ -171,8 +170,8 @@ describe('the guided calibration', () => {
       'the arms hung down',
       () => ({
         ...stretched(person, 'forward'),
-        leftHand: pose(vec3(-0.2, 0.8, 0)),
-        rightHand: pose(vec3(0.2, 0.8, 0)),
+        leftHand: tracked(vec3(-0.2, 0.8, 0)),
+        rightHand: tracked(vec3(0.2, 0.8, 0)),
       }),
       /forward/,
     ],
@@ -185,7 +184,7 @@ describe('the guided calibration', () => {
       'the eyes were on the floor',
       () => ({
         ...stretched(person, 'forward'),
-        head: pose(vec3(0, 1.6, 0), fromAxisAngle(right, -0.8)),
+        head: tracked(vec3(0, 1.6, 0), fromAxisAngle(right, -0.8)),
       }),
       /look/i,
     ],
@@ -196,7 +195,7 @@ describe('the guided calibration', () => {
 
   test.each([0.45, 0.55, 0.7])('a person who sits, or stands %d m low, is as tall as their arms say', (lower) => {
     const still = stretched(person, 'forward');
-    const sunk = (p: TrackedPose | null) => p && pose(add(p.position, vec3(0, -lower, 0)));
+    const sunk = (p: TrackedPose | null) => p && tracked(add(p.position, vec3(0, -lower, 0)));
     const state = guide(() => ({
       head: sunk(still.head)!,
       leftHand: sunk(still.leftHand),
@@ -272,7 +271,7 @@ describe('the guided calibration', () => {
     const there = { position: vec3(0.7, 0, -1.2), orientation: fromAxisAngle(up, 2.2) };
     const place = ({ position, orientation }: Pose<Frame>): TrackedPose => {
       const moved = transformPose(there, { position, orientation });
-      return pose(moved.position, moved.orientation);
+      return tracked(moved.position, moved.orientation);
     };
     const still = stretched(person, 'down and out');
     const moved = { head: place(still.head), leftHand: place(still.leftHand!), rightHand: place(still.rightHand!) };
@@ -321,7 +320,7 @@ describe('the guided calibration', () => {
     });
 
     test('remain unknown for the feet where the person sits', () => {
-      const sunk = (p: TrackedPose) => pose(add(p.position, vec3(0, -0.5, 0)), p.orientation);
+      const sunk = (p: TrackedPose) => tracked(add(p.position, vec3(0, -0.5, 0)), p.orientation);
       const sitting = { head: sunk(moved.head), leftHand: sunk(moved.leftHand), rightHand: sunk(moved.rightHand) };
       const hipsTracker = sunk(placed.hips!);
       const { trackerOffsets } = measured(guide(() => ({ ...sitting, trackers: { ...placed, hips: hipsTracker } })));
@@ -335,8 +334,8 @@ describe('the guided calibration', () => {
     /** Both hands turned in their own frames while the arms point ahead. */
     const held = (left: Quat, right: Quat) => ({
       ...still,
-      leftHand: pose(still.leftHand!.position, left),
-      rightHand: pose(still.rightHand!.position, right),
+      leftHand: tracked(still.leftHand!.position, left),
+      rightHand: tracked(still.rightHand!.position, right),
     });
     const tiltsOf = (state: GuidedCalibration) => measured(state).handTilts;
 
