@@ -178,10 +178,10 @@ function expectSlow(drawn: readonly Joints[]): void {
   expect(Math.max(...steps)).toBeLessThan(3 * slowStep + maxBeyond);
 }
 
-describe.each(bodies)('$label draws a person', (subject) => {
+describe.each(bodies)('by $label', (subject) => {
   const { create, runs } = openSubject(subject);
 
-  test('who holds still: after two seconds still, hands within reach on their controllers', async () => {
+  test('a still person is still after two seconds, with hands within reach on their controllers', async () => {
     await fc.assert(
       fc.asyncProperty(stillPerson, async (person) => {
         const { calibration, frame } = person;
@@ -196,7 +196,7 @@ describe.each(bodies)('$label draws a person', (subject) => {
     );
   });
 
-  test('whose hands move slowly: no joint goes much further in a frame than they do', async () => {
+  test('no joint goes much further in a frame than hands that move slowly', async () => {
     await fc.assert(
       fc.asyncProperty(slowPerson, async ({ calibration, count, frame }) => {
         const estimator = create(calibration);
