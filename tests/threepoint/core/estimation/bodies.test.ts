@@ -129,17 +129,19 @@ describe('arms', () => {
     });
   });
 
+  /** A person whose right hand reaches ahead, palm inwards but for this roll [degrees]. */
+  function reaching(roll: number) {
+    const frame = standing(calibration, hip.left, ahead.right);
+    const orientation = multiply(
+      wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
+      fromAxisAngle(vec3(0, 0, 1), roll * degrees),
+    );
+    return { ...frame, rightHand: { ...frame.rightHand, orientation } };
+  }
+
   test('no wrist is wrung: the forearm takes its part of the hand’s turn', () => {
     for (const roll of [-80, -40, 0, 40, 80]) {
-      const frame = standing(calibration, hip.left, ahead.right);
-      const orientation = multiply(
-        wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
-        fromAxisAngle(vec3(0, 0, 1), roll * degrees),
-      );
-      const pose = poseOf(createEstimator('ik', calibration), {
-        ...frame,
-        rightHand: { ...frame.rightHand, orientation },
-      });
+      const pose = poseOf(createEstimator('ik', calibration), reaching(roll));
       const wrist = twistAngle(pose.body!.localRotations.rightHand, right);
       const forearm = twistAngle(pose.body!.localRotations.rightLowerArm, right);
       expect(Math.abs(wrist)).toBeLessThan(70 * degrees);
@@ -149,15 +151,11 @@ describe('arms', () => {
 
   test('a hand turns as its controller does, palm down, palm up and thumb up', () => {
     for (const roll of [-80, 0, 80]) {
-      const frame = standing(calibration, hip.left, ahead.right);
-      const orientation = multiply(
-        wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
-        fromAxisAngle(vec3(0, 0, 1), roll * degrees),
-      );
-      const joints = bodyOf({ ...frame, rightHand: { ...frame.rightHand, orientation } });
+      const frame = reaching(roll);
+      const joints = bodyOf(frame);
       // In T-pose the right hand's fingers point to +X: its wrist frame is turned by −90° about +Y.
       const shown = multiply(joints.rightHand.orientation, fromAxisAngle(up, -Math.PI / 2));
-      expect(shown).toBeSameRotationAs(orientation, 0.01);
+      expect(shown).toBeSameRotationAs(frame.rightHand.orientation, 0.01);
     }
   });
 
