@@ -4,6 +4,7 @@ import type { Scene, WebGLRenderer } from 'three';
 import {
   type AvatarPose,
   Body,
+  type BodyCallbacks,
   type BodyEvents,
   BodySolver,
   type Calibration,
@@ -25,7 +26,7 @@ import { type OnnxNetworksOptions, onnxNetworks } from 'threepoint/onnx';
 import 'threepoint/onnx-worker';
 import { type EmulatedBody, installBodyTracking } from 'threepoint/polyfill';
 import { RemoteAvatar, SelfAvatar } from 'threepoint/react';
-import { type Avatar, avatarMotionWriter, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
+import { type Avatar, avatarMotionWriter, BodyTracker, loadAvatar } from 'threepoint/three';
 import { type BodyTrackers, pinning, trackerAtJoint } from 'threepoint/trackers';
 
 /** With three.js, its session and an avatar. */
@@ -33,9 +34,7 @@ export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promi
   const avatar: Avatar = await loadAvatar('/avatars/me.glb', { bones: { hips: 'Hips', head: 'Head' } });
   const body = new BodyTracker(renderer, { avatar, estimator: 'learned', calibration: 'auto', autoGrow: false });
   body.addEventListener('calibrated', ({ calibration, source }) => console.log(calibration.eyeHeight, source));
-  body.addEventListener('fallback', ({ estimator, reason }: BodyTrackerEvents['fallback']) =>
-    console.log(estimator, reason),
-  );
+  body.addEventListener('fallback', ({ estimator, reason }: BodyEvents['fallback']) => console.log(estimator, reason));
   body.addEventListener('trackinglost', ({ point }) => console.log(point));
   body.addEventListener('sessionend', () => console.log(body.pose));
   scene.add(body.object);
@@ -65,9 +64,9 @@ export function withoutThree(
   recorded: TrackingFrame,
   person: Calibration,
 ): number | undefined {
-  const events: BodyEvents = {
+  const events: BodyCallbacks = {
     discontinuity: () => console.log('moved'),
-    heightmismatch: (difference) => console.log(difference),
+    heightmismatch: ({ difference }) => console.log(difference),
   };
   const body = new BodySolver({
     estimator: 'paper',

@@ -1,7 +1,7 @@
 // The learned estimator alone, by one way to run its network (?way=…): what a page without graphics pays for it.
 
 import { actorFrame, defaultCalibration } from 'threepoint/core';
-import { createAfterFrame } from '../../src/threepoint/api/after-frame';
+import { nextTurn } from '../../src/threepoint/api/run-work';
 import { createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import { quantile } from '../../src/threepoint/core/math/statistics';
@@ -32,7 +32,6 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
   const opened = performance.now();
   const regressor = await load(way);
   const estimator = createWithNetwork('learned', defaultCalibration, regressor);
-  const { schedule, close } = createAfterFrame();
   const inFrame: number[] = [];
   const onThread: number[] = [];
   let firstBodyMs = Number.NaN;
@@ -47,20 +46,15 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
     if (Number.isNaN(firstBodyMs) && network?.answer(estimator.state.solved)) firstBodyMs = performance.now() - opened;
     let later = 0;
     if (request) {
-      await new Promise<void>((done) =>
-        schedule(() => {
-          const asked = performance.now();
-          void request.ask();
-          later = performance.now() - asked;
-          done();
-        }),
-      );
+      await nextTurn();
+      const asked = performance.now();
+      void request.ask();
+      later = performance.now() - asked;
     }
     if (frame < warmUp) continue;
     inFrame.push(spent);
     onThread.push(spent + later);
   }
-  close();
   const at = (values: readonly number[], share: number) => Number(quantile(values, share).toFixed(4));
   const summary = (values: readonly number[]) => ({ p50: at(values, 0.5), p95: at(values, 0.95) });
   const device = regressor.provider === 'webgpu' ? ` (${await graphicsDevice()})` : '';

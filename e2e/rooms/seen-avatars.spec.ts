@@ -3,7 +3,7 @@ import { createHash, randomBytes } from 'node:crypto';
 import { once } from 'node:events';
 import { fileURLToPath } from 'node:url';
 import type { BrowserContext, BrowserContextOptions } from '@playwright/test';
-import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
+import { changed, type GltfJson, pngHeader, withPictures } from '../../tests/threepoint/avatar/glb';
 import { serveCrossOrigin } from '../cross-origin-server';
 import { drawSeldom } from '../draw-seldom';
 import { expect, freshTest, joinedRoom, joint, keepPicture, probe } from '../page-fixture';
@@ -19,31 +19,17 @@ const glb = (file: ArrayBuffer) => ({ contentType: 'model/gltf-binary', body: Bu
 
 /** Returns the mannequin with other materials, so that its hash differs. */
 const blue = (): ArrayBuffer =>
-  changed((json) => {
-    const { materials } = json as GltfJson & { materials: { name: string; pbrMetallicRoughness: object }[] };
-    for (const material of materials) {
-      material.name = `Blue ${material.name}`;
-      Object.assign(material.pbrMetallicRoughness, { baseColorFactor: [0.05, 0.15, 0.9, 1] });
-    }
-  }, randomBytes(4));
-
-/** Returns a PNG without pixels whose header has this size. */
-function png(width: number, height: number): Buffer {
-  const bytes = Buffer.alloc(64);
-  bytes.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
-  bytes.write('IHDR', 12, 'latin1');
-  bytes.writeUInt32BE(width, 16);
-  bytes.writeUInt32BE(height, 20);
-  return bytes;
-}
-
-const withPicture = (picture: Buffer): ArrayBuffer =>
-  changed((json, length) => {
-    const padded = Math.ceil(length / 4) * 4;
-    json.bufferViews.push({ buffer: 0, byteOffset: padded, byteLength: picture.length });
-    json.images = [{ bufferView: json.bufferViews.length - 1, mimeType: 'image/png' }];
-    json.buffers = [{ byteLength: padded + picture.length }];
-  }, picture);
+  changed(
+    (json) => {
+      const { materials } = json as GltfJson & { materials: { name: string; pbrMetallicRoughness: object }[] };
+      for (const material of materials) {
+        material.name = `Blue ${material.name}`;
+        Object.assign(material.pbrMetallicRoughness, { baseColorFactor: [0.05, 0.15, 0.9, 1] });
+      }
+    },
+    undefined,
+    randomBytes(4),
+  );
 
 /** Malicious avatar files, and the notices that reject them. */
 const malicious: Readonly<Record<string, readonly [file: () => ArrayBuffer, sentence: RegExp]>> = {
@@ -56,9 +42,12 @@ const malicious: Readonly<Record<string, readonly [file: () => ArrayBuffer, sent
       }),
     /MB of description|morph targets/,
   ],
-  'a picture of 16,384 pixels a side': [() => withPicture(png(16_384, 16_384)), /16384 pixels across picture 0/],
+  'a picture of 16,384 pixels a side': [
+    () => withPictures(1, pngHeader(16_384, 16_384)),
+    /16384 pixels across picture 0/,
+  ],
   'a picture with a script in it': [
-    () => withPicture(Buffer.from('<svg xmlns="http://www.w3.org/2000/svg" onload="window.attacked = true"/>')),
+    () => withPictures(1, Buffer.from('<svg xmlns="http://www.w3.org/2000/svg" onload="window.attacked = true"/>')),
     /picture 0 is no PNG/,
   ],
   'an address of somewhere else': [

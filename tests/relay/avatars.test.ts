@@ -21,7 +21,7 @@ afterEach(() => relay.close());
 
 const hashOf = (bytes: Uint8Array): string => createHash('sha256').update(bytes).digest('base64url');
 /** A body of our own, made another file by so many bytes without meaning at its end. */
-const file = (more = 0): Uint8Array => new Uint8Array(changed(() => undefined, randomBytes(4 + more)));
+const file = (more = 0): Uint8Array => new Uint8Array(changed(() => undefined, undefined, randomBytes(4 + more)));
 
 /** A person on a seat, and their way to the store. */
 async function seated(room: string) {

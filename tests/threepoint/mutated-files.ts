@@ -64,3 +64,22 @@ export class ReadingCosts {
     };
   }
 }
+
+/** Random choices by numbers in [0, 1). */
+export function choicesBy(chance: () => number) {
+  const below = (end: number): number => Math.floor(chance() * end);
+  return {
+    below,
+    oneOf: <T>(values: readonly T[]): T => values[below(values.length)]!,
+    /** Flips so many bits of the bytes. */
+    flipBits(bytes: Uint8Array, count: number): void {
+      for (let i = count; i > 0; i--) bytes[below(bytes.length)]! ^= 1 << below(8);
+    },
+  };
+}
+
+/** The objects and lists of a value, at any depth. */
+export function containersIn(value: unknown): (Record<string, unknown> | unknown[])[] {
+  if (typeof value !== 'object' || value === null) return [];
+  return [value as Record<string, unknown>, ...Object.values(value).flatMap(containersIn)];
+}

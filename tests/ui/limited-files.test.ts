@@ -1,26 +1,15 @@
 import type { RequestListener } from 'node:http';
-import { createServer } from 'node:http';
-import type { AddressInfo } from 'node:net';
-import { afterEach, describe, expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { fileNameOf, readLimited } from '../../src/ui/limited-files';
 import { reportFigures } from '../reliability/report-figures';
+import { answeringHost } from '../rooms/client/answering-host';
 
 const recording = { what: 'a recording', megabytes: 1 };
-const closing: (() => void)[] = [];
-
-afterEach(() => {
-  for (const close of closing.splice(0)) close();
-});
 
 /** The address of a file that a server of this machine answers like this. */
 async function servedAt(answer: RequestListener): Promise<string> {
-  const server = createServer(answer);
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  closing.push(() => {
-    server.closeAllConnections();
-    server.close();
-  });
-  return `http://127.0.0.1:${(server.address() as AddressInfo).port}/motion/walk.json?again`;
+  const { folder } = await answeringHost(answer);
+  return `${folder}/walk.json?again`;
 }
 
 /** A file of this size whose bytes are counted as they are asked for. */

@@ -1,8 +1,8 @@
 import {
   allReleased,
   type Button,
+  ButtonPresses,
   type Buttons,
-  createButtonPresses,
   type HapticPulse,
   maxStepSeconds,
   nothingPressed,
@@ -112,7 +112,7 @@ interface Roles {
 /** Turns tracked hands and their buttons into archery actions (src/games/README.md). */
 export class ArcheryGestures {
   readonly #settings: () => ArcheryGestureSettings;
-  readonly #presses = createButtonPresses();
+  readonly #presses = new ButtonPresses();
   /** The last `bowSide` of the settings. */
   #requestedSide: Side | null = null;
   readonly #bow = new HeldBow();

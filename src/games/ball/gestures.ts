@@ -1,9 +1,8 @@
 import {
   allReleased,
   type Button,
-  type ButtonPresses,
+  ButtonPresses,
   type Buttons,
-  createButtonPresses,
   type HapticPulse,
   type Mutable,
   playingHand,
@@ -130,7 +129,7 @@ export class BallGestures {
   private stale = true;
   /** Since when a ball may be in a hand only by the match's state [s]; null: none is. */
   private strayedAt: number | null = null;
-  private readonly presses: ButtonPresses = createButtonPresses();
+  private readonly presses = new ButtonPresses();
   private readonly hands: Readonly<Record<Side, HandState>> = { left: makeHandState(), right: makeHandState() };
   private readonly near: Record<Side, number | null> = { left: null, right: null };
   private readonly held: Record<Side, number | null> = { left: null, right: null };

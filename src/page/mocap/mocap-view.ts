@@ -348,7 +348,7 @@ export class MocapView {
       estimator,
       calibration: clip.calibration,
       aside: secondAside,
-      onFallback: (name, reason) =>
+      onFallback: ({ estimator: name, reason }) =>
         notices.show(
           'warning',
           `${labels[name]} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`,

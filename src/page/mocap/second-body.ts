@@ -1,5 +1,5 @@
 import { Group, type Object3D } from 'three';
-import { BodySolver, type BodySolverOptions, ReplayedBody, type ReplayState } from 'threepoint';
+import { type BodyEvents, BodySolver, type BodySolverOptions, ReplayedBody, type ReplayState } from 'threepoint';
 import type { Calibration, EstimatorName, TrackingFrame, UpperBodyPose } from 'threepoint/core';
 import type { Avatar } from 'threepoint/three';
 
@@ -13,7 +13,7 @@ interface SecondBodyOptions {
   /** The distance of the second body to the right of the first [m]. */
   readonly aside: number;
   loadAvatar(): Promise<Avatar>;
-  onFallback(estimator: EstimatorName, reason: string): void;
+  onFallback(event: BodyEvents['fallback']): void;
 }
 
 /** Another method's body of the same person, next to the first. */

@@ -8,7 +8,6 @@ import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { type TrackedPoint, TrackedPoints, TrackingGate, validFrames } from '../core/tracking/tracking-gate';
-import { type AfterFrame, createAfterFrame } from './after-frame';
 import { assertOptions, optionNames } from './assert-options';
 import { EstimatorSelector } from './estimator-selector';
 import { HeightEstimator } from './height-estimator';
@@ -22,43 +21,46 @@ import { warnAfterDispose } from './warnings';
 export type CalibrationSource = 'given' | 'headset' | 'stood-taller' | 'stand-in' | 'default';
 
 /**
- * Callbacks of a body. Each is called from within one of the body's methods, or when a network has loaded; never from
- * the constructor.
+ * The events of a body with their data. Each is reported from within one of the body's methods, or when a network has
+ * loaded; never from the constructor.
  */
 export interface BodyEvents {
   /** The measures in force have changed, from the next frame on. */
-  calibrated?(calibration: Calibration, source: CalibrationSource): void;
+  readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
   /**
-   * The user stands `difference` [m] taller than the given measures, which stay in force. Called once for each
+   * The user stands `difference` [m] taller than the given measures, which stay in force. Reported once for each
    * calibration.
    */
-  heightmismatch?(difference: number): void;
+  readonly heightmismatch: { readonly difference: number };
   /**
    * The estimator's network failed or could not be loaded, or 'device' is selected and the device reports no body:
    * inverse kinematics draws instead.
    */
-  fallback?(estimator: EstimatorName, reason: string): void;
+  readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
   /** `estimator`, `provider` or `unavailableEstimators` has changed. */
-  estimatorchange?(): void;
+  readonly estimatorchange: object;
   /** The body was reset and continues elsewhere. Do not interpolate between its last pose and the next. */
-  discontinuity?(): void;
+  readonly discontinuity: object;
   /**
    * The point is no longer tracked. Without a head the body keeps its pose; the arm of a lost or guessed hand sinks to
    * rest.
    */
-  trackinglost?(point: TrackedPoint): void;
+  readonly trackinglost: { readonly point: TrackedPoint };
   /** The point is tracked, for the first time or again. */
-  trackingfound?(point: TrackedPoint): void;
+  readonly trackingfound: { readonly point: TrackedPoint };
   /**
    * The joint of a tracker beyond head and hands has been out of the body's reach for a second. The tracker is worn
-   * elsewhere, or the measures are another person's. Called once until the body reaches it.
+   * elsewhere, or the measures are another person's. Reported once until the body reaches it.
    */
-  trackermismatch?(mismatch: TrackerMismatch): void;
+  readonly trackermismatch: TrackerMismatch;
   /** A session starts: frames of its user follow. */
-  sessionstart?(): void;
+  readonly sessionstart: object;
   /** The session is over: `pose` is null. Stop showing the last pose to others. */
-  sessionend?(): void;
+  readonly sessionend: object;
 }
+
+/** Callbacks of a body's events. */
+export type BodyCallbacks = { readonly [Name in keyof BodyEvents]?: (event: BodyEvents[Name]) => void };
 
 export interface BodySolverOptions {
   /** The estimator. Default: 'learned', replaced by inverse kinematics until its weights have loaded. */
@@ -84,7 +86,7 @@ export interface BodySolverOptions {
   readonly clock?: Pick<PageClock, 'tick' | 'paused'>;
   /** Measures the work that follows a frame. */
   readonly profiler?: InferenceProfiler;
-  readonly events?: BodyEvents;
+  readonly events?: BodyCallbacks;
 }
 
 export const bodyOptions = optionNames<BodySolverOptions>({
@@ -98,7 +100,7 @@ export const bodyOptions = optionNames<BodySolverOptions>({
   events: true,
 });
 
-const eventNames = optionNames<BodyEvents>({
+export const eventNames = optionNames<BodyEvents>({
   calibrated: true,
   heightmismatch: true,
   fallback: true,
@@ -124,15 +126,16 @@ const eventNames = optionNames<BodyEvents>({
 export class BodySolver {
   readonly #choice: EstimatorSelector;
   readonly #height: HeightEstimator;
-  #events: BodyEvents;
+  #events: BodyCallbacks;
   readonly #clock: Pick<PageClock, 'tick' | 'paused'>;
   readonly #profiler: InferenceProfiler | null;
   readonly #pinning: Pinning | undefined;
   readonly #gate = new TrackingGate();
   readonly #points = new TrackedPoints((point, tracked) =>
-    tracked ? this.#events.trackingfound?.(point) : this.#events.trackinglost?.(point),
+    this.#events[tracked ? 'trackingfound' : 'trackinglost']?.({ point }),
   );
-  #afterFrame: AfterFrame | null = null;
+  /** Runs `#sendRequest` after a frame: a message is the earliest task that a page can schedule. */
+  #afterFrame: MessageChannel | null = null;
   #calibration: Calibration;
   #userCalibration: Calibration;
   #given: boolean;
@@ -173,16 +176,10 @@ export class BodySolver {
       calibration: this.#calibration,
       create: (name, body, regressor) => createEstimator(name, body, regressor, { pinning }),
       load: profiler ? async (name) => withProfiler(await networks(name), profiler) : networks,
-      onChange: () => this.#events.estimatorchange?.(),
-      onUnavailable: (name, reason) => this.#events.fallback?.(name, reason),
+      onChange: () => this.#events.estimatorchange?.({}),
+      onUnavailable: (name, reason) => this.#events.fallback?.({ estimator: name, reason }),
     });
-    this.#height = new HeightEstimator({
-      calibration: () => this.#userCalibration,
-      isCalibrated: () => this.#given,
-      autoGrow: options.autoGrow ?? true,
-      onMeasured: (measured, source) => this.#setUserCalibration(measured, source),
-      onMismatch: (difference) => this.#events.heightmismatch?.(difference),
-    });
+    this.#height = new HeightEstimator(options.autoGrow ?? true);
   }
 
   /**
@@ -248,7 +245,7 @@ export class BodySolver {
     this.#inSession = true;
     this.#height.startSession();
     this.discontinuity();
-    this.#events.sessionstart?.();
+    this.#events.sessionstart?.({});
   }
 
   /**
@@ -262,7 +259,7 @@ export class BodySolver {
     this.#pose = null;
     this.#points.reset();
     this.#choice.reset();
-    if (ends) this.#events.sessionend?.();
+    if (ends) this.#events.sessionend?.({});
   }
 
   /** Resets the body because the floor lies elsewhere from the next frame on (recentre, teleport, pause). */
@@ -271,7 +268,7 @@ export class BodySolver {
     this.#request = null;
     this.#choice.reset();
     this.#height.reset();
-    this.#events.discontinuity?.();
+    this.#events.discontinuity?.({});
   }
 
   /**
@@ -312,7 +309,7 @@ export class BodySolver {
       return this.#pose;
     }
     if (!this.#isDrivenBy(standIn)) this.#changeDriver(standIn && this.#own(standIn));
-    if (standIn === null) this.#height.observe(frame);
+    if (standIn === null) this.#observeHeight(frame);
     const { pose, request } = this.#choice.current.update(frame);
     this.#pose = pose;
     if (request) this.#scheduleRequest(request);
@@ -340,7 +337,8 @@ export class BodySolver {
     this.#events = {};
     this.#request = null;
     this.#pose = null;
-    this.#afterFrame?.close();
+    // An open port keeps a Node process running.
+    this.#afterFrame?.port1.close();
     return this.#choice.dispose();
   }
 
@@ -355,6 +353,13 @@ export class BodySolver {
     assertCalibration(calibration);
     this.#pinning?.assertOffsets(calibration);
     return { ...calibration };
+  }
+
+  #observeHeight(frame: TrackingFrame): void {
+    const change = this.#height.observe(frame, this.#userCalibration, this.#given);
+    if (!change) return;
+    if ('difference' in change) this.#events.heightmismatch?.(change);
+    else this.#setUserCalibration(change.calibration, change.source);
   }
 
   /**
@@ -384,7 +389,7 @@ export class BodySolver {
     if (calibration === this.#calibration) return;
     this.#calibration = calibration;
     this.#choice.calibrate(calibration);
-    this.#events.calibrated?.(calibration, source);
+    this.#events.calibrated?.({ calibration, source });
   }
 
   /** Sends the request to the network after the frame; a newer request replaces a pending one. */
@@ -392,7 +397,10 @@ export class BodySolver {
     const waits = this.#request !== null;
     this.#request = request;
     if (waits) return;
-    this.#afterFrame ??= createAfterFrame();
-    this.#afterFrame.schedule(this.#sendRequest);
+    if (!this.#afterFrame) {
+      this.#afterFrame = new MessageChannel();
+      this.#afterFrame.port1.onmessage = this.#sendRequest;
+    }
+    this.#afterFrame.port2.postMessage(null);
   }
 }

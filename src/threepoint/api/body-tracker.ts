@@ -1,17 +1,15 @@
-import { EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
+import { type BaseEvent, EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
 import type { Avatar } from '../avatar/avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
-import type { TrackerMismatch } from '../core/estimation/tracker-watch';
 import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
-import type { TrackedPoint } from '../core/tracking/tracking-gate';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import type { Pointing } from '../xr/pointing';
 import { TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
 import { Body, type BodyOptions } from './body';
-import { type CalibrationSource, bodyOptions as solverOptions } from './body-solver';
+import { type BodyEvents, eventNames, bodyOptions as solverOptions } from './body-solver';
 import { loadLearned } from './load-learned';
 import { warnAfterDispose, warnOfFallback } from './warnings';
 
@@ -35,20 +33,6 @@ export interface BodyTrackerOptions<Shown extends Avatar | null = Avatar> extend
   readonly trackers?: () => BodyTrackers | null;
   /** The URL of another contract (.json) of the learned network, next to its weights. */
   readonly modelUrl?: string | URL;
-}
-
-/** The events of a `BodyTracker` with their data; `BodyEvents` describes each. */
-export interface BodyTrackerEvents {
-  readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
-  readonly heightmismatch: { readonly difference: number };
-  readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
-  readonly estimatorchange: object;
-  readonly discontinuity: object;
-  readonly trackinglost: { readonly point: TrackedPoint };
-  readonly trackingfound: { readonly point: TrackedPoint };
-  readonly trackermismatch: TrackerMismatch;
-  readonly sessionstart: object;
-  readonly sessionend: object;
 }
 
 const trackerOptions = [
@@ -102,7 +86,7 @@ function assertAvatar(avatar: unknown): asserts avatar is Avatar {
  *   renderer.render(scene, camera);
  * });
  */
-export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDispatcher<BodyTrackerEvents> {
+export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDispatcher<BodyEvents> {
   /**
    * The object to add to the scene. Its origin is that of the renderer's reference space; it is visible while there is
    * a pose. `avatar.object` inside it is placed on the floor, also where the page has moved its user.
@@ -148,28 +132,23 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
             networks: (name: string) =>
               name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noRuntimeError),
           };
-    const passes = (type: 'estimatorchange' | 'discontinuity' | 'sessionstart' | 'sessionend') => () =>
-      this.dispatchEvent({ type });
+    const emit = <Name extends keyof BodyEvents>(type: Name, event: BodyEvents[Name]) =>
+      this.dispatchEvent({ type, ...event } as BaseEvent<Name> & BodyEvents[Name]);
     this.body = new Body({
       ...networks,
       ...bodyOptions,
       events: {
-        calibrated: (calibration, source) => {
-          this.#avatar?.setCalibration(calibration);
-          this.dispatchEvent({ type: 'calibrated', calibration, source });
+        ...Object.fromEntries(
+          eventNames.map((name) => [name, (event: never) => emit(name as keyof BodyEvents, event)]),
+        ),
+        calibrated: (event) => {
+          this.#avatar?.setCalibration(event.calibration);
+          emit('calibrated', event);
         },
-        heightmismatch: (difference) => this.dispatchEvent({ type: 'heightmismatch', difference }),
-        estimatorchange: passes('estimatorchange'),
-        discontinuity: passes('discontinuity'),
-        fallback: (estimator, reason) => {
-          if (this.#fallbackListeners.size > 0) this.dispatchEvent({ type: 'fallback', estimator, reason });
-          else warnOfFallback(estimator, reason);
+        fallback: (event) => {
+          if (this.#fallbackListeners.size > 0) emit('fallback', event);
+          else warnOfFallback(event);
         },
-        trackinglost: (point) => this.dispatchEvent({ type: 'trackinglost', point }),
-        trackingfound: (point) => this.dispatchEvent({ type: 'trackingfound', point }),
-        trackermismatch: (mismatch) => this.dispatchEvent({ type: 'trackermismatch', ...mismatch }),
-        sessionstart: passes('sessionstart'),
-        sessionend: passes('sessionend'),
       },
     });
     this.object.name = 'body';
@@ -198,17 +177,17 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
     avatar.setFirstPerson(this.#firstPerson);
   }
 
-  override addEventListener<T extends keyof BodyTrackerEvents>(
+  override addEventListener<T extends keyof BodyEvents>(
     type: T,
-    listener: EventListener<BodyTrackerEvents[T], T, this>,
+    listener: EventListener<BodyEvents[T], T, this>,
   ): void {
     if (type === 'fallback') this.#fallbackListeners.add(listener);
     super.addEventListener(type, listener);
   }
 
-  override removeEventListener<T extends keyof BodyTrackerEvents>(
+  override removeEventListener<T extends keyof BodyEvents>(
     type: T,
-    listener: EventListener<BodyTrackerEvents[T], T, this>,
+    listener: EventListener<BodyEvents[T], T, this>,
   ): void {
     if (type === 'fallback') this.#fallbackListeners.delete(listener);
     super.removeEventListener(type, listener);

@@ -1,6 +1,5 @@
 import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { BodySolver, type BodySolverOptions } from './body-solver';
 import { loadWithoutRuntime } from './load-learned';
 import { warnOfFallback } from './warnings';
@@ -26,10 +25,10 @@ export class Body extends BodySolver {
    * Throws a RangeError where the calibration is not human or the estimator is unknown, a TypeError where an option is.
    */
   constructor(options: BodyOptions = {}) {
-    const events = {
-      fallback: (estimator: EstimatorName, reason: string) => warnOfFallback(estimator, reason),
-      ...options.events,
-    };
-    super({ ...options, events, networks: options.networks ?? loadWithoutRuntime });
+    super({
+      ...options,
+      events: { fallback: warnOfFallback, ...options.events },
+      networks: options.networks ?? loadWithoutRuntime,
+    });
   }
 }

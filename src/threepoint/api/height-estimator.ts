@@ -6,20 +6,10 @@ import type { TrackingFrame } from '../core/tracking/tracking-frame';
 /** The time [s] for which a head must be tracked without a gap before its height is used. */
 const settleSeconds = 0.7;
 
-interface HeightEstimatorOptions {
-  calibration(): Calibration;
-  /** Returns whether the user has calibrated: these measures stay, and a mismatch is reported. */
-  isCalibrated(): boolean;
-  /** Whether the user may stand taller than the measures. */
-  readonly autoGrow: boolean;
-  /**
-   * Called with new measures of a user who has not calibrated: from the headset's height, or because they stood up
-   * taller.
-   */
-  onMeasured(calibration: Calibration, source: 'headset' | 'stood-taller'): void;
-  /** Called when a calibrated user stands `difference` [m] taller than their calibration; once for each calibration. */
-  onMismatch(difference: number): void;
-}
+/** New measures of a user who has not calibrated, or by how much [m] another user stands taller than their measures. */
+type HeightChange =
+  | { readonly calibration: Calibration; readonly source: 'headset' | 'stood-taller' }
+  | { readonly difference: number };
 
 /**
  * Estimates the user's height. Without a calibration it is the headset's height in the first frame after
@@ -27,15 +17,16 @@ interface HeightEstimatorOptions {
  * mismatch is reported.
  */
 export class HeightEstimator {
-  readonly #options: HeightEstimatorOptions;
+  readonly #autoGrow: boolean;
   readonly #watch = createGrowthDetector();
   /** The time [s] since which the head is tracked; null: it is not; 'done' once the headset's height was used. */
   #settledSince: number | 'done' | null = null;
   /** The calibration whose mismatch was reported. */
   #reportedMismatch: Calibration | null = null;
 
-  constructor(options: HeightEstimatorOptions) {
-    this.#options = options;
+  /** `autoGrow`: whether the user may stand taller than the measures. */
+  constructor(autoGrow: boolean) {
+    this.#autoGrow = autoGrow;
   }
 
   /** Restarts the estimate because the headset was put on. */
@@ -54,34 +45,31 @@ export class HeightEstimator {
     this.#watch.reset();
   }
 
-  /** Observes a frame with a tracked or emulated head. */
-  observe(frame: TrackingFrame): void {
-    if (!this.#options.isCalibrated()) this.#settle(frame);
-    if (this.#options.autoGrow) this.#grow(frame);
+  /**
+   * Observes a frame with a tracked or emulated head. `given`: the user has calibrated, so that the measures stay; that
+   * they stand taller is returned once for each calibration.
+   */
+  observe(frame: TrackingFrame, calibration: Calibration, given: boolean): HeightChange | null {
+    if (!given && this.#settles(frame))
+      return { calibration: calibrationFromHeadHeight(frame.head.position.y), source: 'headset' };
+    if (!this.#autoGrow || calibration === this.#reportedMismatch) return null;
+    const grown = this.#watch.observe(frame, calibration);
+    if (!grown) return null;
+    if (!given) return { calibration: grown, source: 'stood-taller' };
+    this.#reportedMismatch = calibration;
+    return { difference: grown.eyeHeight - calibration.eyeHeight };
   }
 
-  #settle({ time, head }: TrackingFrame): void {
-    if (this.#settledSince === 'done') return;
+  /** Returns whether the head was tracked for long enough in this frame for the first time. */
+  #settles({ time, head }: TrackingFrame): boolean {
+    if (this.#settledSince === 'done') return false;
     if (!isTracked(head)) {
       this.#settledSince = null;
-      return;
+      return false;
     }
     this.#settledSince ??= time;
-    if (time - this.#settledSince < settleSeconds) return;
+    if (time - this.#settledSince < settleSeconds) return false;
     this.#settledSince = 'done';
-    this.#options.onMeasured(calibrationFromHeadHeight(head.position.y), 'headset');
-  }
-
-  #grow(frame: TrackingFrame): void {
-    const calibration = this.#options.calibration();
-    if (calibration === this.#reportedMismatch) return;
-    const grown = this.#watch.observe(frame, calibration);
-    if (!grown) return;
-    if (!this.#options.isCalibrated()) {
-      this.#options.onMeasured(grown, 'stood-taller');
-      return;
-    }
-    this.#reportedMismatch = calibration;
-    this.#options.onMismatch(grown.eyeHeight - calibration.eyeHeight);
+    return true;
   }
 }

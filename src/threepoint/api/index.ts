@@ -26,7 +26,13 @@ export { parseRecording, type Recording, writeRecording } from '../core/tracking
 export type { BodyTrackers, TrackingFrame } from '../core/tracking/tracking-frame';
 export type { TrackedPoint } from '../core/tracking/tracking-gate';
 export { Body, type BodyOptions } from './body';
-export { type BodyEvents, BodySolver, type BodySolverOptions, type CalibrationSource } from './body-solver';
+export {
+  type BodyCallbacks,
+  type BodyEvents,
+  BodySolver,
+  type BodySolverOptions,
+  type CalibrationSource,
+} from './body-solver';
 export type { InferenceProfiler } from './inference-profiler';
 export { type LoadLearnedOptions, loadLearned } from './load-learned';
 export { ReplayedBody, type ReplayState } from './replayed-body';

@@ -1,13 +1,12 @@
 // "threepoint/polyfill": WebXR Body Tracking for devices without it, estimated from head and hands.
 
 import { reasonOf } from '../core/errors/reasons';
-import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { copyPose, invertTransform, makePose, type Pose, type Transform, transformPose } from '../core/math/pose';
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
 import { Body, type BodyOptions } from './body';
-import { bodyOptions as solverOptions } from './body-solver';
+import { type BodyEvents, bodyOptions as solverOptions } from './body-solver';
 import { warnOfFallback } from './warnings';
 
 export interface InstallBodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
@@ -321,8 +320,8 @@ export function installBodyTracking(options: InstallBodyTrackingOptions = {}): (
   }
   assertOptions('installBodyTracking', options, trackingOptions);
   const { onWarning, ...bodyOptions } = options;
-  const fallback = (estimator: EstimatorName, reason: string): void =>
-    onWarning ? onWarning(reason) : warnOfFallback(estimator, reason, 'onWarning');
+  const fallback = (event: BodyEvents['fallback']): void =>
+    onWarning ? onWarning(event.reason) : warnOfFallback(event, 'onWarning');
   const body = new Body({ ...bodyOptions, events: { fallback } });
   const warn = onWarning ?? warnOfMissingBody;
   const jointNames = [...new XRBodyPoser(body.calibration).names];

@@ -15,7 +15,8 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from '../core/body/calibration';
 import type { BoneMap } from '../core/humanoid/bones';
 import { type AvatarSource, loadAvatar } from './avatar-source';
-import { BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions } from './body-tracker';
+import type { BodyEvents } from './body-solver';
+import { BodyTracker, type BodyTrackerOptions } from './body-tracker';
 import { warnOfFallback } from './warnings';
 
 /** The prop that receives each event of a tracker. */
@@ -30,13 +31,13 @@ const callbackNames = {
   trackermismatch: 'onTrackerMismatch',
   sessionstart: 'onSessionStart',
   sessionend: 'onSessionEnd',
-} as const satisfies Record<keyof BodyTrackerEvents, string>;
+} as const satisfies Record<keyof BodyEvents, string>;
 
 type EventName = keyof typeof callbackNames;
 
 /** Callbacks of a tracker's events, each with the event's fields; the newest props are called. */
 export type SelfAvatarCallbacks = {
-  readonly [Name in EventName as (typeof callbackNames)[Name]]?: (event: BodyTrackerEvents[Name]) => void;
+  readonly [Name in EventName as (typeof callbackNames)[Name]]?: (event: BodyEvents[Name]) => void;
 };
 
 export interface LoadedAvatarProps {
@@ -196,7 +197,7 @@ function listen(tracker: BodyTracker, props: RefObject<SelfAvatarProps>): void {
     tracker.addEventListener(type, (event) => {
       const callback = props.current[callbackNames[type]] as ((event: unknown) => void) | undefined;
       if (callback) callback(event);
-      else if ('reason' in event) warnOfFallback(event.estimator, event.reason, 'onFallback');
+      else if ('reason' in event) warnOfFallback(event, 'onFallback');
     });
   }
 }

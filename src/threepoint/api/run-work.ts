@@ -16,19 +16,18 @@ export interface WorkOptions {
 
 const reportEveryMs = 100;
 
-const host: WorkHost = {
-  now: () => performance.now(),
-  // A page in the background delays timers, but not messages.
-  nextTurn: () =>
-    new Promise((resolve) => {
-      const { port1, port2 } = new MessageChannel();
-      port1.onmessage = () => {
-        port1.close();
-        resolve();
-      };
-      port2.postMessage(null);
-    }),
-};
+/** Resolves in a later turn of the event loop. A page in the background delays timers, but not messages. */
+export const nextTurn = (): Promise<void> =>
+  new Promise((resolve) => {
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = () => {
+      port1.close();
+      resolve();
+    };
+    port2.postMessage(null);
+  });
+
+const host: WorkHost = { now: () => performance.now(), nextTurn };
 
 /** Runs long work in slices of a few milliseconds, so that a page keeps drawing. Rejects with what the work throws. */
 export async function runWork<Result>(work: Work<Result>, { onProgress, signal }: WorkOptions = {}): Promise<Result> {

@@ -15,4 +15,4 @@ export { thirdPersonOnlyLayer } from '../avatar/rig/body-meshes';
 export type { BoneMap } from '../core/humanoid/bones';
 export type { AvatarMotionOptions, AvatarSource, LoadAvatarOptions } from './avatar-source';
 export { avatarMotionWriter, loadAvatar, loadMannequin } from './avatar-source';
-export { BodyTracker, type BodyTrackerEvents, type BodyTrackerOptions } from './body-tracker';
+export { BodyTracker, type BodyTrackerOptions } from './body-tracker';

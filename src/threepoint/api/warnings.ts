@@ -16,7 +16,10 @@ export function warnAfterDispose(object: object, what: string): void {
  * Warns that inverse kinematics replaces the selected estimator, for a page without a handler. `handler`: the handler's
  * name.
  */
-export function warnOfFallback(estimator: EstimatorName, reason: string, handler = 'fallback'): void {
+export function warnOfFallback(
+  { estimator, reason }: { readonly estimator: EstimatorName; readonly reason: string },
+  handler = 'fallback',
+): void {
   console.warn(
     `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. Handle “${handler}” to report it yourself.`,
   );

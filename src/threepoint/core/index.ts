@@ -64,10 +64,10 @@ export { nameOfAddress } from './files';
 export { type BoneMap, type BoneName, boneNames, neededBones, vrmFingerNames } from './humanoid/bones';
 export type { SkeletonJoint } from './humanoid/joint-tree';
 export { type FileBones, UnknownBonesError } from './humanoid/unknown-bones-error';
-export type { Button, ButtonPresses, Buttons, HandButtons } from './input/button-presses';
+export type { Button, Buttons, HandButtons } from './input/button-presses';
 export {
   allReleased,
-  createButtonPresses,
+  ButtonPresses,
   nothingPressed,
   playingHand,
   pressureOf,

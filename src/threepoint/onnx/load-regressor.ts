@@ -59,23 +59,18 @@ export async function startRegressor(
     }
   }
 
-  async function openFirst(): Promise<InferenceSession> {
-    try {
-      return await open(provider);
-    } catch (error) {
-      if (provider === 'wasm') throw withFileName(contract.file, error);
+  const first = await open(provider)
+    .catch((error: unknown) => {
+      if (provider === 'wasm') throw error;
       onProviderFallback?.(`WebGPU does not run ${contract.file} (${reasonOf(error)}): WebAssembly takes over.`);
-      return open('wasm').catch((second) => {
-        throw withFileName(contract.file, second);
-      });
-    }
-  }
-
-  return new SessionRegressor(contract, await openFirst(), {
-    // WebAssembly needs no graphics device, and the loaded bundle contains it.
-    open: () => open('wasm', 'webgpu').catch(() => open('wasm')),
-    ...(onProviderFallback && { onTakeover: onProviderFallback }),
-  });
+      return open('wasm');
+    })
+    .catch((error: unknown) => {
+      throw withFileName(contract.file, error);
+    });
+  // WebAssembly needs no graphics device, and the loaded bundle contains it.
+  const openWasm = () => open('wasm', 'webgpu').catch(() => open('wasm'));
+  return new SessionRegressor(contract, first, openWasm, onProviderFallback);
 }
 
 /** Runs an open session once; throws an Error if it does not match its contract. */

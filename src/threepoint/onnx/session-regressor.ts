@@ -3,14 +3,6 @@ import type { ModelContract, PoseRegressor } from '../core/estimation/networks/p
 import { withFileName } from './model-files';
 import type { InferenceSession } from './session';
 
-/** The replacement of a session whose graphics device fails. */
-interface Takeover {
-  /** Opens the network in WebAssembly. */
-  open(): Promise<InferenceSession>;
-  /** Called with the reason for leaving WebGPU, once WebAssembly runs. */
-  onTakeover?(reason: string): void;
-}
-
 /** The time [ms] by which a failed run may precede the browser's report of a lost device. */
 const lossPatienceMs = 1000;
 
@@ -30,16 +22,27 @@ async function lossOf({ lost }: InferenceSession): Promise<string | null> {
 /** Runs a network in a session of the runtime: on a graphics device, and where that fails in WebAssembly. */
 export class SessionRegressor implements PoseRegressor {
   readonly contract: ModelContract;
-  readonly #takeover: Takeover;
+  readonly #openWasm: () => Promise<InferenceSession>;
+  readonly #onTakeover: ((reason: string) => void) | undefined;
   #session: InferenceSession;
   /** The WebAssembly session, once it was requested. */
   #next: Promise<InferenceSession> | null = null;
   #disposed = false;
 
-  constructor(contract: ModelContract, session: InferenceSession, takeover: Takeover) {
+  /**
+   * `openWasm`: opens the network in WebAssembly where the device of its session fails. `onTakeover`: called with the
+   * reason, once it runs there.
+   */
+  constructor(
+    contract: ModelContract,
+    session: InferenceSession,
+    openWasm: () => Promise<InferenceSession>,
+    onTakeover?: (reason: string) => void,
+  ) {
     this.contract = contract;
     this.#session = session;
-    this.#takeover = takeover;
+    this.#openWasm = openWasm;
+    this.#onTakeover = onTakeover;
   }
 
   get provider(): string {
@@ -70,7 +73,7 @@ export class SessionRegressor implements PoseRegressor {
 
   async #leave(device: InferenceSession, error: unknown): Promise<InferenceSession> {
     const { file } = this.contract;
-    const opened = await this.#takeover.open().catch((second: unknown) => {
+    const opened = await this.#openWasm().catch((second: unknown) => {
       throw withFileName(file, second);
     });
     if (this.#disposed) await opened.release();
@@ -87,7 +90,7 @@ export class SessionRegressor implements PoseRegressor {
       loss === null
         ? `WebGPU failed at ${this.contract.file} (${reasonOf(error)})`
         : `The graphics device was lost (${loss})`;
-    this.#takeover.onTakeover?.(`${what}: WebAssembly takes over.`);
+    this.#onTakeover?.(`${what}: WebAssembly takes over.`);
   }
 
   /** Throws where the network was released. */

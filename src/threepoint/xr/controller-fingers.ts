@@ -32,8 +32,6 @@ const thumbUp = fingerBend(0.12, 0.62, -0.05, -0.1);
 
 /** Estimates the fingers of a hand that holds a controller from the buttons that it presses and touches. */
 export class ControllerFingers {
-  /** The newest shape; overwritten by the next `read`. */
-  readonly shape: HandShape;
   readonly #shape: MutableHandShape = makeHandShape();
   /** The distance of the index finger from the trigger and of the thumb from the face: 0 on it, 1 away. */
   #pointing = 0;
@@ -42,11 +40,7 @@ export class ControllerFingers {
   #capacitive = false;
   #lastTime: number | null = null;
 
-  constructor() {
-    this.shape = this.#shape;
-  }
-
-  /** Returns the fingers of this frame. `time`: [s], on the clock of the frames. */
+  /** Returns the fingers of this frame, overwritten by the next. `time`: [s], on the clock of the frames. */
   read(gamepad: Gamepad | undefined, time: number): HandShape {
     const fraction = this.#lastTime === null ? 1 : smoothingFactor(halfLife, time - this.#lastTime);
     this.#lastTime = time;

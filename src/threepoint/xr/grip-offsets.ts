@@ -2,7 +2,7 @@ import { sideSign } from '../core/body/skeleton';
 import type { Frame, Pose } from '../core/math/pose';
 import { conjugate, fromAxes, multiply, type Quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { add, scale, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import { add, cross, scale, subtract, type Vec3, vec3 } from '../core/math/vec3';
 
 /**
  * The fit of a controller in the hand. WebXR's grip: origin in the middle of the fist, −Z along the handle towards the
@@ -90,8 +90,7 @@ function holdGrip(side: Side, { ahead, below, lean }: HandleFit): HeldGrip {
   const handle = add(scale(thumb, Math.cos(lean)), scale(knuckles, Math.sin(lean)));
   const x = scale(back, sigma);
   const z = scale(handle, -1);
-  const y = vec3(z.y * x.z - z.z * x.y, z.z * x.x - z.x * x.z, z.x * x.y - z.y * x.x);
-  const orientation = fromAxes(x, y, z);
+  const orientation = fromAxes(x, cross(z, x), z);
   return { orientation, inverse: conjugate(orientation), position: vec3(0, -below, -ahead) };
 }
 

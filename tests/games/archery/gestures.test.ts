@@ -1,4 +1,4 @@
-import { allReleased, type Button, createButtonPresses } from 'threepoint/core';
+import { allReleased, type Button, ButtonPresses } from 'threepoint/core';
 import { add, addScaled, distance, dot, fromAxisAngle, normalise, rotate, type Side, up, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../src/games/archery/bow';
@@ -114,7 +114,7 @@ describe('pressing', () => {
   });
 
   test('a button that is down when a hand comes into sight was not pressed then', () => {
-    const presses = createButtonPresses();
+    const presses = new ButtonPresses();
     const down = { ...allReleased, trigger: 1 };
     expect(presses.follow('left', down, true)).toEqual([]);
     expect(presses.follow('left', allReleased, true)).toEqual([]);

@@ -9,6 +9,7 @@ describe('a body whose network is unavailable', () => {
   test('is drawn by inverse kinematics, and says why', async () => {
     const { body, reported } = await observed({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
     expect(reported).toEqual(['fallback learned learned.bin: gone']);
+    expect([body.selectedEstimator, body.unavailableEstimators]).toEqual(['ik', { learned: 'learned.bin: gone' }]);
     expect(body.update(at(0))?.body).not.toBeNull();
     expect(body.estimator).toBe('ik');
   });
@@ -42,7 +43,7 @@ describe('a body whose network is unavailable', () => {
     const reported: string[] = [];
     const body = new Body({
       estimator: 'ik',
-      events: { fallback: (name, reason) => reported.push(`${name} ${reason}`) },
+      events: { fallback: ({ estimator, reason }) => reported.push(`${estimator} ${reason}`) },
     });
     await body.setEstimator('paper');
     expect(reported).toEqual([expect.stringMatching(/^paper .*onnxNetworks/)]);
@@ -75,7 +76,8 @@ describe('a network that answers later', () => {
     });
     const { body } = await observed({ calibration, networks: async (name) => network(name) });
     for (let frame = 0; frame < 3; frame++) body.update(at(frame / 60));
-    expect(runs).toBe(0);
+    await Promise.resolve();
+    expect(runs, 'nothing within the frame, nor in its microtasks').toBe(0);
     await expect.poll(() => runs).toBe(1);
     expect(body.provider).toBe('later');
   });

@@ -1,5 +1,6 @@
 import { describe, expect, test, vi } from 'vitest';
 import { Body, type BodyOptions } from '../../../src/threepoint/api/body';
+import type { BodyCallbacks } from '../../../src/threepoint/api/body-solver';
 import { copyAvatarPose } from '../../../src/threepoint/core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
@@ -148,7 +149,7 @@ describe('a body', () => {
     const body = new Body({
       estimator: 'ik',
       calibration: measures,
-      events: { calibrated: ({ eyeHeight }) => reported.push(eyeHeight) },
+      events: { calibrated: ({ calibration: { eyeHeight } }) => reported.push(eyeHeight) },
     });
     const pelvis = () => body.update(at(0))!.body!.hipsPosition.y;
     const before = pelvis();
@@ -167,7 +168,7 @@ describe('a body', () => {
   test('follows a stand-in whose page goes on changing their measures', () => {
     const reported: number[] = [];
     const person = { ...calibration, eyeHeight: 1.7 };
-    const events = { calibrated: ({ eyeHeight }: Calibration) => reported.push(eyeHeight) };
+    const events: BodyCallbacks = { calibrated: ({ calibration: { eyeHeight } }) => reported.push(eyeHeight) };
     const body = new Body({ estimator: 'ik', calibration, events });
     body.update(at(0), person);
     person.eyeHeight = 1.8;
@@ -238,7 +239,7 @@ describe('a body', () => {
       },
       events: {
         estimatorchange: () => reported.push('changed'),
-        fallback: (name, reason) => reported.push(`${name}: ${reason}`),
+        fallback: ({ estimator, reason }) => reported.push(`${estimator}: ${reason}`),
       },
     });
     expect(reported).toEqual([]);
@@ -335,7 +336,7 @@ describe('measures of a stand-in', () => {
       estimator: 'ik',
       events: {
         discontinuity: () => reported.push('jumped'),
-        calibrated: (_, source) => reported.push(`calibrated ${source}`),
+        calibrated: ({ source }) => reported.push(`calibrated ${source}`),
       },
     });
     const handTilts = { left: { pitch: 0.1, yaw: 0.2 } };

@@ -8,13 +8,10 @@ import {
   estimatorNames,
   type PoseEstimator,
 } from '../../../src/threepoint/core/estimation/pose-estimator';
+import { tracked } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
 
-const head = {
-  position: { x: 0, y: 1.6, z: 0 },
-  orientation: { x: 0, y: 0, z: 0, w: 1 },
-  tracking: 'tracked',
-} as const;
+const head = tracked({ x: 0, y: 1.6, z: 0 });
 
 /** A stand-in that draws nothing; its network is at fault when the regressor's provider says so. */
 function estimatorOf(name: EstimatorName, _: unknown, network: PoseRegressor | null): PoseEstimator {
@@ -78,16 +75,6 @@ describe('the estimator that draws', () => {
     expect(choice.current).toBe(learned);
     await choice.setEstimator('ik');
     expect(choice.current).not.toBe(learned);
-  });
-
-  test('a network that cannot be loaded leaves inverse kinematics, with the reason', async () => {
-    const { choice, faults } = choiceThat(async () => {
-      throw new Error('learned.onnx: 404');
-    });
-    await choice.setEstimator('learned');
-    expect([choice.selected, choice.current.name]).toEqual(['ik', 'ik']);
-    expect(choice.unavailable.learned).toBe('learned.onnx: 404');
-    expect(faults).toEqual(['learned: learned.onnx: 404']);
   });
 
   test('a network that cannot be loaded leaves inverse kinematics after another network, too', async () => {

@@ -15,7 +15,10 @@ const rate = 60;
 const nowhere = { x: Number.NaN, y: 1, z: 0 };
 const noRotation = { x: 0, y: 0, z: 0, w: 0 };
 
-const withoutTracking = ({ position, orientation }: TrackedPose) => ({ position, orientation });
+const placeOf = ({ position, orientation }: TrackedPose) => ({ position, orientation });
+// reason: of a page without types
+const withoutTracking = ({ time, head, leftHand, rightHand }: TrackingFrame) =>
+  ({ time, head: placeOf(head), leftHand: placeOf(leftHand!), rightHand: placeOf(rightHand!) }) as TrackingFrame;
 
 /** A frame with one thing in it that no tracker means. */
 const slips: readonly (readonly [what: string, slip: (frame: TrackingFrame) => TrackingFrame])[] = [
@@ -31,18 +34,9 @@ const slips: readonly (readonly [what: string, slip: (frame: TrackingFrame) => T
   ['a time without end', (frame) => ({ ...frame, time: Number.POSITIVE_INFINITY })],
   // reason: a page without types leaves out what it does not see
   ['no word of its hands', ({ time, head }) => ({ time, head }) as TrackingFrame],
-  // reason: of a page without types; the same holds for the next
+  // reason: of a page without types
   ['a head that is null', (frame) => ({ ...frame, head: null }) as unknown as TrackingFrame],
-  [
-    'no word of how its points are tracked',
-    ({ time, head, leftHand, rightHand }) =>
-      ({
-        time,
-        head: withoutTracking(head),
-        leftHand: withoutTracking(leftHand!),
-        rightHand: withoutTracking(rightHand!),
-      }) as TrackingFrame,
-  ],
+  ['no word of how its points are tracked', withoutTracking],
   [
     'a device’s body that is nowhere',
     (frame) => ({ ...frame, deviceBody: new Float32Array(deviceBodySize).fill(Number.NaN) }),
@@ -56,7 +50,7 @@ async function bodyBy(estimator: EstimatorName) {
     estimator,
     calibration,
     networks: async () => openPlainModel(),
-    events: { fallback: (name, reason) => faults.push(`${name} ${reason}`) },
+    events: { fallback: ({ estimator, reason }) => faults.push(`${estimator} ${reason}`) },
   });
   await body.setEstimator(estimator);
   return { body, faults };
@@ -89,8 +83,8 @@ test('a point that is no place is lost for its frame, and found again', async ()
     estimator: 'ik',
     calibration,
     events: {
-      trackinglost: (point) => reported.push(`lost ${point}`),
-      trackingfound: (point) => reported.push(`found ${point}`),
+      trackinglost: ({ point }) => reported.push(`lost ${point}`),
+      trackingfound: ({ point }) => reported.push(`found ${point}`),
     },
   });
   body.update(at(0));
@@ -105,15 +99,7 @@ test('a point that is no place is lost for its frame, and found again', async ()
 
 test('a point of a page that does not say how it is tracked is there', () => {
   const bodies = [new Body({ estimator: 'ik', calibration }), new Body({ estimator: 'ik', calibration })] as const;
-  const { time, head, leftHand, rightHand } = at(0);
-  // reason: a page without types
-  const bare = {
-    time,
-    head: withoutTracking(head),
-    leftHand: withoutTracking(leftHand!),
-    rightHand: withoutTracking(rightHand!),
-  } as TrackingFrame;
-  expect(bodies[0].update(bare)?.body).toEqual(bodies[1].update(at(0))?.body);
+  expect(bodies[0].update(withoutTracking(at(0)))?.body).toEqual(bodies[1].update(at(0))?.body);
 });
 
 test('a rotation of another length than 1, as from mixed quaternions, counts as its direction', () => {

@@ -15,11 +15,12 @@ export async function observed(options: BodyOptions = {}) {
     networks: async () => openPlainModel(),
     ...options,
     events: {
-      calibrated: ({ eyeHeight }, source) => reported.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
-      heightmismatch: (difference) => reported.push(`outgrown by ${difference.toFixed(2)}`),
-      fallback: (estimator, reason) => reported.push(`fallback ${estimator} ${reason}`),
-      trackinglost: (point) => reported.push(`lost ${point}`),
-      trackingfound: (point) => reported.push(`found ${point}`),
+      calibrated: ({ calibration, source }) =>
+        reported.push(`calibrated ${calibration.eyeHeight.toFixed(2)} ${source}`),
+      heightmismatch: ({ difference }) => reported.push(`outgrown by ${difference.toFixed(2)}`),
+      fallback: ({ estimator, reason }) => reported.push(`fallback ${estimator} ${reason}`),
+      trackinglost: ({ point }) => reported.push(`lost ${point}`),
+      trackingfound: ({ point }) => reported.push(`found ${point}`),
     },
   });
   await body.setEstimator(options.estimator ?? 'learned');

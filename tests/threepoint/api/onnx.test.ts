@@ -1,37 +1,31 @@
 import { readFileSync } from 'node:fs';
-import { createServer, type Server } from 'node:http';
-import type { AddressInfo } from 'node:net';
+import { basename } from 'node:path';
 import { actorFrame, defaultCalibration } from 'threepoint/core';
-import { afterAll, beforeAll, expect, test } from 'vitest';
+import { expect, test } from 'vitest';
 import { Body } from '../../../src/threepoint/api/body';
 import { loadLearned } from '../../../src/threepoint/api/load-learned';
 import { onnxNetworks } from '../../../src/threepoint/api/onnx';
+import { answeringHost } from '../../rooms/client/answering-host';
 
-let server: Server;
-let models = '';
-
-beforeAll(async () => {
-  server = createServer((request, response) => {
-    const name = request.url?.split('/').at(-1) ?? '';
-    response.end(readFileSync(new URL(`../../../public/models/${name}`, import.meta.url)));
+/** Serves the networks until the test is over; returns their folder. */
+async function servedModels(): Promise<string> {
+  const { folder } = await answeringHost(({ url = '' }, response) => {
+    const { pathname } = new URL(url, 'http://localhost');
+    response.end(readFileSync(new URL(`../../../public/models/${basename(pathname)}`, import.meta.url)));
   });
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  models = `http://127.0.0.1:${(server.address() as AddressInfo).port}/any/folder`;
-});
-
-afterAll(async () => {
-  await new Promise((resolve) => server.close(resolve));
-});
+  return folder;
+}
 
 test.each(['paper', 'learned'] as const)(
   'the runtime brings the %s network, whose answer a later frame draws',
   async (name) => {
+    const models = await servedModels();
     const reported: string[] = [];
     const body = new Body({
       estimator: name,
       calibration: defaultCalibration,
       networks: onnxNetworks({ modelUrl: (network) => `${models}/${network}.json` }),
-      events: { fallback: (_, reason) => reported.push(reason) },
+      events: { fallback: ({ reason }) => reported.push(reason) },
     });
     await body.setEstimator(name);
     expect(body.estimator).toBe(name);
@@ -56,7 +50,7 @@ test.each(['paper', 'learned'] as const)(
 );
 
 test('another contract’s weights are taken from beside it', async () => {
-  const regressor = await loadLearned({ modelUrl: `${models}/learned.json?version=2` });
+  const regressor = await loadLearned({ modelUrl: `${await servedModels()}/learned.json?version=2` });
   expect(regressor.runNow?.(new Float32Array(regressor.contract.inputs[0]!.shape.at(-1)!))).toHaveLength(18);
 });
 

@@ -177,15 +177,6 @@ describe('a body in a session of three.js', () => {
     expect(turned.every(Number.isFinite)).toBe(true);
   });
 
-  test('takes its height from the headset', async () => {
-    const { headset, tracker, run, reported } = await begin();
-    headset.setHead({ position: { x: 0, y: 1.5, z: 0 }, orientation: identity });
-    headset.putOn();
-    run(72);
-    expect(reported).toContain('calibrated headset');
-    expect(tracker.calibration.eyeHeight).toBeCloseTo(1.5);
-  });
-
   test('has its hands on the controllers of a device that tracks nothing, as emulators do', async () => {
     const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
     const guessed = { ...left, emulated: true };
@@ -252,17 +243,6 @@ describe('a body in a session of three.js', () => {
     const late = await loadAvatar(mannequin());
     tracker.setAvatar(late);
     expect(tracker.avatar).not.toBe(late);
-  });
-
-  test('says which hand is lost and which is found', async () => {
-    const { headset, run, reported } = await begin({ calibration: defaultCalibration });
-    headset.putOn();
-    run(2);
-    headset.setInputs(controller('right', right));
-    run(2);
-    headset.setInputs(controller('left', left), controller('right', right));
-    run(2);
-    expect(reported.slice(4)).toEqual(['lost left', 'found left']);
   });
 
   test('a frame of the page’s own moves it without a session', async () => {

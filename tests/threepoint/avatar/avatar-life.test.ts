@@ -185,7 +185,6 @@ describe('eyes', () => {
           ...{ rangeMapHorizontalOuter: range, rangeMapVerticalDown: range, rangeMapVerticalUp: range },
         };
       },
-      undefined,
       readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url)),
     );
     const { vrm } = await parseAvatar(bytes, 'painted-eyes.vrm');
@@ -314,17 +313,13 @@ describe('a mouth', () => {
     'moves by the shape %s of a file without expressions, and by one alone',
     async (name) => {
       const file = readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url));
-      const bytes = changed(
-        (json) => {
-          delete (json.extensions.VRMC_vrm as unknown as Record<string, unknown>).expressions;
-          for (const { extras } of json.meshes) {
-            const shapes = extras?.targetNames as string[] | undefined;
-            if (shapes) extras!.targetNames = shapes.map((shape, i) => [name, 'MouthOpen'][i] ?? shape);
-          }
-        },
-        undefined,
-        file,
-      );
+      const bytes = changed((json) => {
+        delete (json.extensions.VRMC_vrm as unknown as Record<string, unknown>).expressions;
+        for (const { extras } of json.meshes) {
+          const shapes = extras?.targetNames as string[] | undefined;
+          if (shapes) extras!.targetNames = shapes.map((shape, i) => [name, 'MouthOpen'][i] ?? shape);
+        }
+      }, file);
       const loaded = await parseAvatar(bytes, 'shaped.vrm');
       const avatar = createAvatar(loaded);
       avatar.setCalibration(defaultCalibration);

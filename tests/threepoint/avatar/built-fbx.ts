@@ -11,6 +11,12 @@ const unit = 100;
 /** The angles about x, y and z [degrees] of a bone in each frame. */
 export type BoneTurns = Readonly<Partial<Record<BoneName, readonly (readonly [number, number, number])[]>>>;
 
+/** A clip of two arms. */
+export const wave = {
+  leftUpperArm: Array.from({ length: 40 }, (_, frame) => [0, 0, -frame] as const),
+  rightLowerArm: Array.from({ length: 40 }, (_, frame) => [0, 4 * frame, 0] as const),
+};
+
 export interface BuiltFbxOptions extends Pick<RigOptions, 'nameOf' | 'without' | 'more' | 'place'> {
   /** The clip; absent: there is none. */
   readonly turns?: BoneTurns;

@@ -1,3 +1,5 @@
+import { deflateSync } from 'node:zlib';
+
 /** An integer that FBX keeps in 64 bits: numbers of objects and times. */
 export interface Long {
   readonly long: number;
@@ -108,3 +110,13 @@ export function fbxBinary(nodes: readonly FbxNode[], pack?: (bytes: Uint8Array) 
   const whole = Buffer.concat([header, records(nodes, header.length, true), Buffer.alloc(176)]);
   return whole.buffer.slice(whole.byteOffset, whole.byteOffset + whole.length) as ArrayBuffer;
 }
+
+/** Writes binary FBX 7.4 with packed arrays. */
+export const fbxPacked = (nodes: readonly FbxNode[]): ArrayBuffer => fbxBinary(nodes, deflateSync);
+
+/** The forms of a file, and what writes them. */
+export const fbxForms = [
+  ['text', fbxText],
+  ['binary', (nodes: readonly FbxNode[]) => fbxBinary(nodes)],
+  ['packed binary', fbxPacked],
+] as const;

@@ -1,22 +1,12 @@
-import { deflateSync } from 'node:zlib';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
 import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
 import type { SceneParts } from '../../../src/threepoint/avatar/file/fbx/glb-of-scene';
-import { builtFbx } from './built-fbx';
-import { type FbxNode, fbxBinary, fbxNode, fbxText, long } from './fbx-file';
+import { builtFbx, wave } from './built-fbx';
+import { type FbxNode, fbxForms, fbxNode, long } from './fbx-file';
 import { mixamo } from './rig-namings';
 
 const nameOf = mixamo('mixamorig:');
 const name = 'person.fbx';
-const forms = [
-  ['text', fbxText],
-  ['binary', (nodes: readonly FbxNode[]) => fbxBinary(nodes)],
-  ['packed binary', (nodes: readonly FbxNode[]) => fbxBinary(nodes, deflateSync)],
-] as const;
-const wave = {
-  leftUpperArm: Array.from({ length: 40 }, (_, frame) => [0, 0, -frame] as const),
-  rightLowerArm: Array.from({ length: 40 }, (_, frame) => [0, 4 * frame, 0] as const),
-};
 
 const count = 20_000;
 const list = (value: (i: number) => number, length = count) => Int32Array.from({ length }, (_, i) => value(i));
@@ -193,7 +183,7 @@ const cases: readonly (readonly [string, SceneParts, readonly FbxNode[], RegExp]
   ],
 ];
 
-describe.each(forms)('work without end in FBX as %s is refused within a second', (_, write) => {
+describe.each(fbxForms)('work without end in FBX as %s is refused within a second', (_, write) => {
   test.each(cases)('%s', async (_, parts, nodes, reason) => {
     vi.spyOn(console, 'warn').mockReturnValue(undefined);
     onTestFinished(() => void vi.restoreAllMocks());

@@ -5,27 +5,17 @@ import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
 import { convertToGlb } from '../../../src/threepoint/avatar/file/convert-to-glb';
 import { MotionOnlyError } from '../../../src/threepoint/avatar/file/motion-only-error';
 import { parseChecked } from '../../../src/threepoint/avatar/load-avatar';
-import { builtFbx } from './built-fbx';
-import { type FbxNode, fbxBinary, fbxNode, fbxText, long } from './fbx-file';
+import { builtFbx, wave } from './built-fbx';
+import { type FbxNode, fbxBinary, fbxForms, fbxNode, fbxPacked, long } from './fbx-file';
 import { partsOf } from './glb';
 import { mixamo } from './rig-namings';
 import { expectBody, wear } from './worn-body';
 
 const nameOf = mixamo('mixamorig:');
 const name = 'person.fbx';
-const packed = (nodes: readonly FbxNode[]) => fbxBinary(nodes, deflateSync);
-const forms = [
-  ['text', fbxText],
-  ['binary', (nodes: readonly FbxNode[]) => fbxBinary(nodes)],
-  ['packed binary', packed],
-] as const;
 const check = (bytes: ArrayBuffer) => checkAvatar(bytes, { name, supportedCompressions: [] });
-const wave = {
-  leftUpperArm: Array.from({ length: 40 }, (_, frame) => [0, 0, -frame] as const),
-  rightLowerArm: Array.from({ length: 40 }, (_, frame) => [0, 4 * frame, 0] as const),
-};
 
-describe.each(forms)('FBX as %s', (_, write) => {
+describe.each(fbxForms)('FBX as %s', (_, write) => {
   test('is worn: wrists, fingers, palms and head where the wearer’s are', async () => {
     expectBody(wear(await parseChecked(await check(write(builtFbx({ nameOf }))))));
   });
@@ -44,7 +34,7 @@ describe.each(forms)('FBX as %s', (_, write) => {
 
   test('keeps its motion as one clip', async () => {
     const glb = await convertToGlb(write(builtFbx({ nameOf, turns: wave })), name, 'motion');
-    const { json } = partsOf(new Uint8Array(glb));
+    const { json } = partsOf(glb);
     const [clip, ...others] = json.animations as { channels: { target: { node: number; path: string } }[] }[];
     expect(others).toEqual([]);
     const moved = clip!.channels.map(({ target }) => `${json.nodes[target.node]!.name} ${target.path}`);
@@ -60,8 +50,8 @@ test('a picture inside FBX is on the body, and others see the converted file', a
     'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==',
     'base64',
   );
-  const { file } = await check(packed(builtFbx({ nameOf, picture })));
-  const { json, binary } = partsOf(new Uint8Array(await file.arrayBuffer()));
+  const { file } = await check(fbxPacked(builtFbx({ nameOf, picture })));
+  const { json, binary } = partsOf(await file.arrayBuffer());
   const [{ bufferView, mimeType }] = json.images as [{ bufferView: number; mimeType: string }];
   const view = json.bufferViews[bufferView]!;
   expect(mimeType).toBe('image/png');
@@ -86,15 +76,15 @@ test.each([
       ...node,
       children: node.name === 'Geometry' ? [...children, layer] : withLayer(children),
     }));
-  expectBody(wear(await parseChecked(await check(packed(withLayer(builtFbx({ nameOf })))))));
+  expectBody(wear(await parseChecked(await check(fbxPacked(withLayer(builtFbx({ nameOf })))))));
 });
 
 test('an FBX avatar takes motion as GLB', async () => {
-  const writer = await createAvatarMotionWriter(packed(builtFbx({ nameOf })), name);
+  const writer = await createAvatarMotionWriter(fbxPacked(builtFbx({ nameOf })), name);
   expect(writer.extension).toBe('glb');
 });
 
-test.each(forms)('names that every object has are left out of FBX as %s', async (_, write) => {
+test.each(fbxForms)('names that every object has are left out of FBX as %s', async (_, write) => {
   const odd = ['__proto__', 'constructor', 'toString'].map((called) => fbxNode(called, [1], [fbxNode('a', ['b'])]));
   const inside = (nodes: readonly FbxNode[]): readonly FbxNode[] =>
     nodes.map((node) => ({ ...node, children: node.children.length > 0 ? [...odd, ...inside(node.children)] : [] }));
@@ -124,7 +114,7 @@ describe('is refused with a sentence', () => {
   });
 
   test('a file that is cut short', async () => {
-    await refused(packed(builtFbx({ nameOf })).slice(0, 5000)).toThrow(/^person\.fbx: .*cut short/);
+    await refused(fbxPacked(builtFbx({ nameOf })).slice(0, 5000)).toThrow(/^person\.fbx: .*cut short/);
   });
 
   test('an array that grows when it is unpacked', async () => {
@@ -150,7 +140,7 @@ describe('is refused with a sentence', () => {
 
   test('a file of more than 60 MB, before it is read', async () => {
     const large = new Uint8Array(61 * 2 ** 20);
-    large.set(new Uint8Array(packed(builtFbx({ nameOf }))));
+    large.set(new Uint8Array(fbxPacked(builtFbx({ nameOf }))));
     await refused(large.buffer).toThrow('person.fbx: 61 MB; an FBX file may have 60 MB at most');
   });
 });

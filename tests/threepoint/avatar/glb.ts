@@ -37,8 +37,9 @@ const copy = (file: Uint8Array): ArrayBuffer =>
 export const padded = (length: number): number => Math.ceil(length / 4) * 4;
 
 /** What a GLB file consists of. */
-export function partsOf(file: Uint8Array): { readonly json: GltfJson; readonly binary: Buffer } {
-  const whole = Buffer.from(file.buffer, file.byteOffset, file.byteLength);
+export function partsOf(file: Uint8Array | ArrayBuffer): { readonly json: GltfJson; readonly binary: Buffer } {
+  const whole =
+    file instanceof ArrayBuffer ? Buffer.from(file) : Buffer.from(file.buffer, file.byteOffset, file.length);
   const length = whole.readUInt32LE(12);
   return {
     json: JSON.parse(whole.toString('utf8', 20, 20 + length)) as GltfJson,
@@ -70,13 +71,36 @@ export const mannequin = (): ArrayBuffer => copy(bytes);
 /** The mannequin's file, or this one, with its JSON changed, and more put at the end of its binary part. */
 export function changed(
   change: (json: GltfJson, binaryLength: number) => void,
+  file: Uint8Array | ArrayBuffer = bytes,
   more: Uint8Array = new Uint8Array(),
-  file: Uint8Array = bytes,
 ): ArrayBuffer {
   const { json, binary } = partsOf(file);
   change(json, binary.length);
   return glbOf(json, Buffer.concat([binary, more]));
 }
+
+/** The first bytes of a PNG of this size. */
+export function pngHeader(width: number, height: number): Buffer {
+  const png = Buffer.alloc(64);
+  png.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
+  png.writeUInt32BE(13, 8);
+  png.write('IHDR', 12, 'latin1');
+  png.writeUInt32BE(width, 16);
+  png.writeUInt32BE(height, 20);
+  return png;
+}
+
+/** A file with so many pictures that nothing shows, all of them these bytes. */
+export const withPictures = (count: number, picture: Uint8Array, file?: ArrayBuffer): ArrayBuffer =>
+  changed(
+    (json, binaryLength) => {
+      json.bufferViews.push({ buffer: 0, byteOffset: binaryLength, byteLength: picture.length });
+      const image = { bufferView: json.bufferViews.length - 1, mimeType: 'image/png' };
+      json.images = Array.from({ length: count }, () => image);
+    },
+    file,
+    picture,
+  );
 
 /** VRM 0.x: faces −Z at rest, bones in a list. */
 export const old = changed((json) => {

@@ -68,6 +68,7 @@ export function largeAvatar({ pictures, layers, shapes, mtoon }: LargeAvatarOpti
       addShapes(json, shapes);
       if (mtoon) paintAsToon(json);
     },
+    undefined,
     Buffer.concat([padding(0), ...painted.flatMap((png) => [png, padding(png.length)])]),
   );
 }

@@ -1,4 +1,3 @@
-import { deflateSync } from 'node:zlib';
 import { Euler, Matrix4, Quaternion, Vector3 } from 'three';
 import { expect, test } from 'vitest';
 import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
@@ -10,7 +9,7 @@ import { truthJoints } from '../../../src/threepoint/core/mocap/skeleton-map';
 import { finishWork } from '../../../src/threepoint/core/motion/work';
 import { type BoneTurns, builtFbx } from './built-fbx';
 import { rigJoints } from './built-rig';
-import { fbxBinary, fbxText } from './fbx-file';
+import { fbxBinary, fbxPacked, fbxText } from './fbx-file';
 import { changed, type GltfJson, glbOf, partsOf } from './glb';
 import { mixamo } from './rig-namings';
 
@@ -58,7 +57,7 @@ async function expectTruth(bytes: ArrayBuffer, name: string): Promise<void> {
 
 test.each([
   ['text', fbxText(builtFbx(options))],
-  ['bytes', fbxBinary(builtFbx(options), deflateSync)],
+  ['bytes', fbxPacked(builtFbx(options))],
   ['bones alone', fbxBinary(builtFbx({ ...options, bare: true }))],
 ])('motion in FBX as %s is read as it was written', async (_, bytes) => {
   await expectTruth(bytes, 'wave.fbx');
@@ -67,42 +66,34 @@ test.each([
 test('the clip of a GLB, the longest of several, is read too', async () => {
   const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
   await expectTruth(glb, 'wave.glb');
-  const { json, binary } = partsOf(new Uint8Array(glb));
+  const { json, binary } = partsOf(glb);
   json.buffers[0]!.uri = `data:application/octet-stream;base64,${Buffer.from(binary).toString('base64')}`;
   await expectTruth(new TextEncoder().encode(JSON.stringify(json)).buffer, 'wave.gltf');
-  const several = changed(
-    (json: GltfJson) => {
-      const [clip] = json.animations as { channels: object[]; samplers: object[] }[];
-      json.accessors.push({ ...json.accessors[0]!, count: 1, max: [0] });
-      const short = { input: json.accessors.length - 1, output: json.accessors.length - 1 };
-      json.animations = [
-        { name: 'none', channels: [], samplers: [short] },
-        { ...clip, name: 'wave' },
-      ];
-    },
-    new Uint8Array(),
-    new Uint8Array(glb),
-  );
+  const several = changed((json: GltfJson) => {
+    const [clip] = json.animations as { channels: object[]; samplers: object[] }[];
+    json.accessors.push({ ...json.accessors[0]!, count: 1, max: [0] });
+    const short = { input: json.accessors.length - 1, output: json.accessors.length - 1 };
+    json.animations = [
+      { name: 'none', channels: [], samplers: [short] },
+      { ...clip, name: 'wave' },
+    ];
+  }, glb);
   const { notes } = finishWork(prepareMocap({ name: 'wave.glb', ...(await readGltfMotion(several, 'wave.glb')) }));
   expect(notes).toContain('it has 2 clips; the longest, “wave”, is shown');
 });
 
 test('a skin that was bound in T-pose counts as rest where the file shows another pose', async () => {
   const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
-  const posed = changed(
-    (json) => {
-      const arm = json.nodes.find(({ name }) => name === 'mixamorig:LeftArm') as { rotation?: number[] };
-      arm.rotation = [0, 0, -Math.SQRT1_2, Math.SQRT1_2];
-    },
-    new Uint8Array(),
-    new Uint8Array(glb),
-  );
+  const posed = changed((json) => {
+    const arm = json.nodes.find(({ name }) => name === 'mixamorig:LeftArm') as { rotation?: number[] };
+    arm.rotation = [0, 0, -Math.SQRT1_2, Math.SQRT1_2];
+  }, glb);
   await expectTruth(posed, 'wave.glb');
 });
 
 test('a skin bound to chain ends a hundredfold off is read all the same', async () => {
   const glb = await convertToGlb(fbxBinary(builtFbx(options)), 'wave.fbx', 'motion');
-  const { json, binary } = partsOf(new Uint8Array(glb));
+  const { json, binary } = partsOf(glb);
   const skin = json.skins[0]! as { joints: number[]; inverseBindMatrices: number };
   const { byteOffset = 0 } = json.bufferViews[json.accessors[skin.inverseBindMatrices]!.bufferView!]!;
   for (const [i, joint] of skin.joints.entries()) {
@@ -119,7 +110,7 @@ test('a skin bound to chain ends a hundredfold off is read all the same', async 
 
 /** Puts each buffer view of a file into a buffer of its own, as data URLs. */
 function withDataUrls(bytes: ArrayBuffer): GltfJson {
-  const { json, binary } = partsOf(new Uint8Array(bytes));
+  const { json, binary } = partsOf(bytes);
   Object.assign(json, {
     buffers: json.bufferViews.map(({ byteOffset = 0, byteLength }) => ({
       byteLength,
@@ -152,13 +143,13 @@ test('a body whose numbers and pictures are in data URLs is read as the body its
   const text = new TextEncoder().encode(JSON.stringify(withDataUrls(changed(() => undefined))));
   const read = await checkAvatar(text.buffer, { name: 'a.gltf', supportedCompressions: [] });
   const [one, other] = await Promise.all(
-    [plain, read].map(async ({ file }) => partsOf(new Uint8Array(await file.arrayBuffer())).json.accessors),
+    [plain, read].map(async ({ file }) => partsOf(await file.arrayBuffer()).json.accessors),
   );
   expect(other).toEqual(one);
   const pictured = changed((json) => {
     json.images = [{ uri: 'data:image/png;base64,iVBORw0KGgo=' }];
   });
-  const { json, binary } = partsOf(new Uint8Array(await convertToGlb(pictured, 'a.vrm', 'body')));
+  const { json, binary } = partsOf(await convertToGlb(pictured, 'a.vrm', 'body'));
   const { bufferView, ...image } = json.images![0]!;
   expect(image).toEqual({ mimeType: 'image/png' });
   const { byteOffset = 0, byteLength } = json.bufferViews[bufferView!]!;

@@ -1,4 +1,3 @@
-import { deflateSync } from 'node:zlib';
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { untrustedAvatarLimits } from '../../../src/threepoint/avatar/file/avatar-limits';
 import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
@@ -11,9 +10,9 @@ import { prepareMocap } from '../../../src/threepoint/core/mocap/prepare-mocap';
 import { finishWork } from '../../../src/threepoint/core/motion/work';
 import { releaseMemory } from '../../collect-garbage.mjs';
 import { reportFigures } from '../../reliability/report-figures';
-import { mutatedFiles, mutationSeed, ReadingCosts } from '../mutated-files';
+import { choicesBy, mutatedFiles, mutationSeed, ReadingCosts } from '../mutated-files';
 import { builtFbx } from './built-fbx';
-import { type FbxNode, fbxBinary, fbxText } from './fbx-file';
+import { type FbxNode, fbxForms, fbxPacked } from './fbx-file';
 import { type GltfJson, partsOf } from './glb';
 import { mixamo } from './rig-namings';
 
@@ -32,8 +31,7 @@ const nodes = builtFbx({
 const allNodes = (all: readonly FbxNode[]): FbxNode[] => all.flatMap((node) => [node, ...allNodes(node.children)]);
 const spoilable = allNodes(nodes);
 
-type Write = (nodes: readonly FbxNode[]) => ArrayBuffer;
-const forms: readonly Write[] = [fbxText, (all) => fbxBinary(all), (all) => fbxBinary(all, deflateSync)];
+const forms = fbxForms.map(([, write]) => write);
 const whole = forms.map((write) => write(nodes));
 const oddNumbers = [0, -1, 0.5, 1e9, -1e9, 2 ** 31 - 1, 1e300, -1e-300];
 const namesIn = (all: readonly FbxNode[]): string[] =>
@@ -44,13 +42,11 @@ const oddNames = ['', '__proto__', 'constructor', 'Objects', 'a', 'Model::', 'Cl
 
 /** Ways to spoil a file: its bytes, or what its nodes say. */
 function spoilers(chance: () => number) {
-  const below = (end: number) => Math.floor(chance() * end);
-  const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
+  const { below, oneOf, flipBits } = choicesBy(chance);
   const spoiledBytes = (file: ArrayBuffer): ArrayBuffer => {
     const bytes = new Uint8Array(file.slice(0));
     // Half of the time in what every file begins with.
-    const end = chance() < 0.5 ? Math.min(4000, bytes.length) : bytes.length;
-    for (let i = 1 + below(4); i > 0; i--) bytes[below(end)]! ^= 1 << below(8);
+    flipBits(chance() < 0.5 ? bytes.subarray(0, 4000) : bytes, 1 + below(4));
     return bytes.buffer;
   };
   const spoiledProperty = (property: FbxNode['properties'][number]): FbxNode['properties'][number] => {
@@ -97,12 +93,11 @@ test('the memory held for a file of packed arrays is a few times its size', {
   };
   const chance = createRandom(48);
   const turned = Array.from({ length: 30_000 }, () => [chance(), chance(), chance()] as const);
-  const large = fbxBinary(
+  const large = fbxPacked(
     builtFbx({
       nameOf: mixamo('mixamorig:'),
       turns: { leftUpperArm: turned, rightUpperArm: turned, spine: turned, head: turned },
     }),
-    deflateSync,
   );
   expect(large.byteLength).toBeGreaterThan(3e6);
   await convertToGlb(whole[0]!, name, 'motion');
@@ -163,7 +158,7 @@ test(`${files} spoiled FBX files are refused in a sentence or read as GLB, each 
       continue;
     }
     counts['FBX read'] += 1;
-    const { json, binary } = partsOf(new Uint8Array(read));
+    const { json, binary } = partsOf(read);
     expect(json.nodes.length, `file ${i}`).toBeGreaterThan(0);
     expect(unfiniteNumbers(json, binary), `file ${i}`).toBe(0);
     const worn = await costs.measure(file.byteLength, () => wornOrMoved(read, parts));

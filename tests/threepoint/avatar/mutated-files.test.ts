@@ -5,33 +5,18 @@ import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';
 import { parseChecked } from '../../../src/threepoint/avatar/load-avatar';
 import { createRandom } from '../../../src/threepoint/core/math/random';
 import { reportFigures } from '../../reliability/report-figures';
-import { mutatedFiles, mutationSeed, ReadingCosts } from '../mutated-files';
+import { choicesBy, containersIn, mutatedFiles, mutationSeed, ReadingCosts } from '../mutated-files';
 import { builtRig } from './built-rig';
-import { changed, type GltfJson, glbOf, mannequin, partsOf } from './glb';
+import { changed, type GltfJson, glbOf, mannequin, partsOf, pngHeader, withPictures } from './glb';
 import { vroid } from './rig-namings';
 import { smallOldVrm, smallVrm } from './small-vrms';
 
 const name = 'person.vrm';
 const files = mutatedFiles(1000);
 
-const picture = Buffer.alloc(64);
-picture.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
-picture.write('IHDR', 12, 'latin1');
-picture.writeUInt32BE(64, 16);
-picture.writeUInt32BE(64, 20);
-
-/** The small rig's file, with a picture that nothing shows. */
-const pictured = changed(
-  (json, binaryLength) => {
-    json.bufferViews.push({ buffer: 0, byteOffset: binaryLength, byteLength: picture.length });
-    json.images = [{ bufferView: json.bufferViews.length - 1, mimeType: 'image/png' }];
-  },
-  picture,
-  new Uint8Array(builtRig({ nameOf: vroid })),
-);
 /** Small files mostly: of a large one the Khronos validator reads every number. */
 const originals: readonly ArrayBuffer[] = [
-  ...[builtRig({ nameOf: vroid }), pictured],
+  ...[builtRig({ nameOf: vroid }), withPictures(1, pngHeader(64, 64), builtRig({ nameOf: vroid }))],
   ...[smallVrm, smallVrm, smallVrm, smallVrm, smallOldVrm, smallOldVrm, smallOldVrm],
   mannequin(),
 ];
@@ -41,22 +26,15 @@ const oddValues: readonly unknown[] = [
   ...['VEC3', 'MAT4', 5120, 5126, 'data:,', 'KHR_draco_mesh_compression', { toString: null }],
 ];
 
-/** The objects and lists of a value, at any depth. */
-function containersIn(value: unknown): (Record<string, unknown> | unknown[])[] {
-  if (typeof value !== 'object' || value === null) return [];
-  return [value as Record<string, unknown>, ...Object.values(value).flatMap(containersIn)];
-}
-
 /** Ways to spoil a file. */
 function spoilers(chance: () => number) {
-  const below = (end: number) => Math.floor(chance() * end);
-  const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
+  const { below, oneOf, flipBits } = choicesBy(chance);
   const copyOf = (file: ArrayBuffer) => new Uint8Array(file.slice(0));
   const lengthOfJson = (bytes: Uint8Array) => new DataView(bytes.buffer).getUint32(12, true);
 
   function withBytes(file: ArrayBuffer, from: number, to: number): ArrayBuffer {
     const bytes = copyOf(file);
-    for (let i = 1 + below(4); i > 0; i--) bytes[from + below(to - from)]! ^= 1 << below(8);
+    flipBits(bytes.subarray(from, to), 1 + below(4));
     return bytes.buffer;
   }
   function spoilJson(json: GltfJson): void {
@@ -77,7 +55,7 @@ function spoilers(chance: () => number) {
     (file) => withBytes(file, 20 + lengthOfJson(copyOf(file)), file.byteLength),
     (file) => file.slice(0, below(file.byteLength)),
     ...Array.from({ length: 6 }, () => (file: ArrayBuffer) => {
-      const { json, binary } = partsOf(new Uint8Array(file));
+      const { json, binary } = partsOf(file);
       for (let i = 1 + below(3); i > 0; i--) spoilJson(json);
       return glbOf(json, binary);
     }),
@@ -111,15 +89,11 @@ interface SpringExtensions {
 
 /** The springs of a file with a value in place of the offset of its collider. */
 const withOffset = (file: ArrayBuffer, offset: unknown) =>
-  changed(
-    ({ extensions }) => {
-      const { VRMC_springBone: springs, VRM: old } = extensions as SpringExtensions;
-      const collider = springs?.colliders[0]?.shape.sphere ?? old?.secondaryAnimation.colliderGroups[0]?.colliders[0];
-      if (offset !== undefined) collider!.offset = offset;
-    },
-    new Uint8Array(),
-    new Uint8Array(file),
-  );
+  changed(({ extensions }) => {
+    const { VRMC_springBone: springs, VRM: old } = extensions as SpringExtensions;
+    const collider = springs?.colliders[0]?.shape.sphere ?? old?.secondaryAnimation.colliderGroups[0]?.colliders[0];
+    if (offset !== undefined) collider!.offset = offset;
+  }, file);
 
 test.each([
   ['VRM 1.0', smallVrm, [{ toString: null }, 0, 0]],

@@ -148,7 +148,7 @@ describe('a body of rigid parts', () => {
 
 describe('a file with what no one reads is taken', () => {
   const taken = async (change: (json: GltfJson) => void) => {
-    const file = changed(change, new Uint8Array(), new Uint8Array(builtRig({ nameOf })));
+    const file = changed(change, builtRig({ nameOf }));
     const checked = await checkAvatar(file, { name: 'person.glb', supportedCompressions: [] });
     expectBody(wear(await parseChecked(checked)));
   };
@@ -176,11 +176,7 @@ describe('a file with what no one reads is taken', () => {
 });
 
 test('a VRM 0.x without annotations for first person hides its head from its wearer', async () => {
-  const bare = changed(
-    (json) => delete (json.extensions.VRM as { firstPerson?: object }).firstPerson,
-    new Uint8Array(),
-    new Uint8Array(smallOldVrm),
-  );
+  const bare = changed((json) => delete (json.extensions.VRM as { firstPerson?: object }).firstPerson, smallOldVrm);
   const { avatar } = wear(await parseAvatar(bare, 'person.vrm'));
   avatar.setFirstPerson(true);
   const layers: number[] = [];
@@ -314,15 +310,11 @@ describe('a rig of few or odd bones has the wearer’s hands in twelve postures:
   });
 
   test('with several skins', async () => {
-    const file = changed(
-      (json) => {
-        const body = json.nodes.findIndex(({ name }) => name === 'Body');
-        json.skins.push({ ...json.skins[0]! });
-        json.nodes[0]!.children!.push(json.nodes.push({ ...json.nodes[body]!, name: 'Clothes', skin: 1 }) - 1);
-      },
-      new Uint8Array(),
-      new Uint8Array(builtRig({ nameOf })),
-    );
+    const file = changed((json) => {
+      const body = json.nodes.findIndex(({ name }) => name === 'Body');
+      json.skins.push({ ...json.skins[0]! });
+      json.nodes[0]!.children!.push(json.nodes.push({ ...json.nodes[body]!, name: 'Clothes', skin: 1 }) - 1);
+    }, builtRig({ nameOf }));
     const worn = wear(await parseAvatar(file, 'person.glb'));
     expectHands(worn);
     const skins: number[] = [];

@@ -35,13 +35,11 @@ function failing(message = 'no memory is left') {
   });
   const told: string[] = [];
   let asked = 0;
-  const regressor = new SessionRegressor(contract, device.opened, {
-    open() {
-      asked += 1;
-      return arrives;
-    },
-    onTakeover: (reason) => told.push(reason),
-  });
+  const openWasm = () => {
+    asked += 1;
+    return arrives;
+  };
+  const regressor = new SessionRegressor(contract, device.opened, openWasm, (reason) => told.push(reason));
   return { device, wasm, regressor, told, asked: () => asked, arrive, fail };
 }
 

@@ -150,20 +150,6 @@ describe('the body that a device reports', () => {
     expect(placeRead('right-foot-transverse')).toBeCloseTo(placeOf('right-foot-ball').x, 6);
   });
 
-  test('is there again once a frame can be asked after one that could not', () => {
-    const headset = headsetWithBody();
-    const reader = new DeviceBodyReader();
-    const { fillPoses } = headset.frame;
-    headset.frame.fillPoses = () => {
-      throw new DOMException('the frame is over', 'InvalidStateError');
-    };
-    expect(read(reader, headset)).toBeNull();
-    expect(reader.problem).toMatch(/cannot be read/);
-    headset.frame.fillPoses = fillPoses;
-    expect(read(reader, headset)).not.toBeNull();
-    expect(reader.problem).toBeNull();
-  });
-
   test('is in the tracked frame of a tracker that reads it, and in no other', () => {
     const headset = headsetWithBody();
     const frame = headset.frame as unknown as XRFrame;

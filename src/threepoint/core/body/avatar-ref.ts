@@ -13,6 +13,3 @@ export const avatarHashPattern = /^[\w-]{43}$/;
 
 /** The largest file of an avatar that others see [bytes]. */
 export const maxAvatarBytes = 20 * 2 ** 20;
-
-/** Returns whether this is the hash of a file, and not a name. */
-export const isAvatarHash = (avatar: AvatarRef): avatar is AvatarHash => avatarHashPattern.test(avatar);

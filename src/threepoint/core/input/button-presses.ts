@@ -38,20 +38,6 @@ export const pressureOf = (buttons: HandButtons, button: Button): number => {
   return value > 0 ? Math.min(value, 1) : 0;
 };
 
-/** Distinguishes presses from noise by thresholds with hysteresis, separately for each hand. */
-export interface ButtonPresses {
-  /**
-   * Returns the buttons that were pressed in this frame. A hand that is not tracked has none. A button that is down
-   * when the hand is first tracked, or after a change of kind, does not count.
-   */
-  follow(side: Side, buttons: HandButtons, seen: boolean): readonly Button[];
-  /**
-   * Returns whether the hand's kind changed with the last frame, or its device in this one, as when two controllers
-   * swap sides: objects in the hand are then released.
-   */
-  changedKind(side: Side): boolean;
-}
-
 class HandPresses {
   changed = false;
   #kind: HandButtons['kind'] = undefined;
@@ -92,10 +78,23 @@ class HandPresses {
   }
 }
 
-export function createButtonPresses(): ButtonPresses {
-  const hands = { left: new HandPresses(), right: new HandPresses() };
-  return {
-    changedKind: (side) => hands[side].changed,
-    follow: (side, buttons, seen) => hands[side].follow(buttons, seen),
-  };
+/** Distinguishes presses from noise by thresholds with hysteresis, separately for each hand. */
+export class ButtonPresses {
+  readonly #hands = { left: new HandPresses(), right: new HandPresses() };
+
+  /**
+   * Returns the buttons that were pressed in this frame. A hand that is not tracked has none. A button that is down
+   * when the hand is first tracked, or after a change of kind, does not count.
+   */
+  follow(side: Side, buttons: HandButtons, seen: boolean): readonly Button[] {
+    return this.#hands[side].follow(buttons, seen);
+  }
+
+  /**
+   * Returns whether the hand's kind changed with the last frame, or its device in this one, as when two controllers
+   * swap sides: objects in the hand are then released.
+   */
+  changedKind(side: Side): boolean {
+    return this.#hands[side].changed;
+  }
 }

@@ -1,4 +1,7 @@
+import { sideSign } from '../body/skeleton';
+import type { BoneName } from '../humanoid/bones';
 import { angleBetween, conjugate, fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import { type Side, sides } from '../math/side';
 import { median } from '../math/statistics';
 import {
   cross,
@@ -19,15 +22,8 @@ import { recordOf } from '../records';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
 
-/** The joints of a file by their index that show how a body stands; −1: the file has no such joint. */
-export interface StandingJoints {
-  readonly hips: number;
-  readonly neck: number;
-  readonly upperArms: readonly [number, number];
-  readonly upperLegs: readonly [number, number];
-  readonly feet: readonly [number, number];
-  readonly toes: readonly [number, number];
-}
+/** The joints of a body by their index in a file; absent: the file has no such joint. */
+export type BodyJoints = Readonly<Partial<Record<BoneName, number>> & Record<'hips' | 'neck', number>>;
 
 /** The largest lean of a body at rest [rad]; a larger one is another pose. */
 const maxLean = 0.6;
@@ -36,7 +32,7 @@ const standing = 0.7;
 /** The largest number of frames that are sampled to find how a clip stands. */
 const maxSamples = 300;
 
-const axisNames = Object.keys(directions) as FileAxis[];
+export const axisNames = Object.keys(directions) as FileAxis[];
 
 /** Returns the rotation to the floor frame of a file in which these axes point up and ahead. */
 export const floorFromAxes = (above: Vec3, ahead: Vec3): Quat =>
@@ -63,11 +59,12 @@ export interface BodyAxes {
  * Returns the axes of a body from its trunk at rest; null: left and right lie on each other. `turned`: the body may
  * face anywhere, as in a frame of a motion.
  */
-export function axesOfTrunk(rest: readonly Vec3[], joints: StandingJoints, turned = false): BodyAxes | null {
-  const above = normalise(subtract(rest[joints.neck]!, rest[joints.hips]!), zero);
+export function axesOfTrunk(rest: readonly Vec3[], joints: BodyJoints, turned = false): BodyAxes | null {
+  const above = trunkDirection(rest, joints);
   const size = distance(rest[joints.neck]!, rest[joints.hips]!);
-  for (const [left, other] of [joints.upperLegs, joints.upperArms]) {
-    if (left < 0 || other < 0) continue;
+  for (const part of ['UpperLeg', 'UpperArm'] as const) {
+    const [left, other] = [joints[`left${part}`], joints[`right${part}`]];
+    if (left === undefined || other === undefined) continue;
     const across = reject(subtract(rest[other]!, rest[left]!), above);
     if (!(length(across) > 0.05 * size)) continue;
     const vertical = nearestAxis(above);
@@ -86,7 +83,7 @@ export function axesOfTrunk(rest: readonly Vec3[], joints: StandingJoints, turne
 }
 
 /** Returns the unit direction from hips to neck. */
-export const trunkDirection = (positions: readonly Vec3[], { hips, neck }: StandingJoints): Vec3 =>
+export const trunkDirection = (positions: readonly Vec3[], { hips, neck }: BodyJoints): Vec3 =>
   normalise(subtract(positions[neck]!, positions[hips]!), zero);
 
 /** Yields some frames of a clip, evenly. */
@@ -105,13 +102,13 @@ interface Stance {
   readonly lowest: Readonly<Record<FileAxis, number>>;
 }
 
-function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): Stance {
+function stanceOf(file: ImportedMotion, floor: Quat, joints: BodyJoints): Stance {
   const poses = createSkeletonPose(file.names.length);
   const fractions = recordOf(axisNames, () => 0);
   const lows = recordOf(axisNames, (): number[] => []);
-  const bodies = [joints.hips, joints.neck, ...joints.upperArms, ...joints.upperLegs, ...joints.feet].filter(
-    (i) => i >= 0,
-  );
+  const feet = sides.flatMap((side) => joints[`${side}Foot`] ?? []);
+  const limbs = sides.flatMap((side) => [joints[`${side}UpperArm`] ?? [], joints[`${side}UpperLeg`] ?? []].flat());
+  const bodies = [joints.hips, joints.neck, ...limbs, ...feet];
   let [count, upright] = [0, 0];
   for (const frame of sampledFrames(file.frameCount)) {
     file.pose(frame, poses);
@@ -121,7 +118,7 @@ function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): St
     const trunk = subtract(at(joints.neck), at(joints.hips));
     const size = length(trunk);
     const way = normalise(trunk, zero);
-    const legs = joints.feet.filter((i) => i >= 0).map((foot) => normalise(subtract(at(foot), at(joints.hips)), zero));
+    const legs = feet.map((foot) => normalise(subtract(at(foot), at(joints.hips)), zero));
     if (way.y > standing && legs.every((leg) => leg.y < -0.5)) upright += 1;
     for (const axis of axisNames) {
       const above = directions[axis];
@@ -139,7 +136,7 @@ function stanceOf(file: ImportedMotion, floor: Quat, joints: StandingJoints): St
  * frames and would stand along this axis. null: up is correct. A body that lies on the floor, and whose feet would not
  * be on the other floor, lies.
  */
-export function otherUp(file: ImportedMotion, floor: Quat, joints: StandingJoints): FileAxis | null {
+export function otherUp(file: ImportedMotion, floor: Quat, joints: BodyJoints): FileAxis | null {
   const { fractions, lowest, upright } = stanceOf(file, floor, joints);
   const best = axisNames.reduce((a, b) => (fractions[b] > fractions[a] ? b : a));
   // A person who also stands at times lies down in the other frames.
@@ -159,18 +156,22 @@ export function turnBetween(from: FileAxis, to: FileAxis): Quat {
 }
 
 /** Returns whether toes point back in most frames: left and right are exchanged. null: no toes show it. */
-export function facesBack(file: ImportedMotion, joints: StandingJoints): boolean | null {
-  const [leftHip, rightHip] = joints.upperLegs;
-  if ([leftHip, rightHip, ...joints.feet, ...joints.toes].some((i) => i < 0)) return null;
+export function facesBack(file: ImportedMotion, joints: BodyJoints): boolean | null {
+  const { leftUpperLeg, rightUpperLeg } = joints;
+  const feet = sides.flatMap((side) => {
+    const [foot, toes] = [joints[`${side}Foot`], joints[`${side}Toes`]];
+    return foot === undefined || toes === undefined ? [] : [{ foot, toes }];
+  });
+  if (leftUpperLeg === undefined || rightUpperLeg === undefined || feet.length < 2) return null;
   const poses = createSkeletonPose(file.names.length);
   let [back, clear] = [0, 0];
   for (const frame of sampledFrames(file.frameCount, 100)) {
     const { positions } = file.pose(frame, poses);
     const above = subtract(positions[joints.neck]!, positions[joints.hips]!);
-    const ahead = cross(above, subtract(positions[rightHip]!, positions[leftHip]!));
-    for (const side of [0, 1] as const) {
-      const foot = subtract(positions[joints.toes[side]]!, positions[joints.feet[side]]!);
-      const cosine = dot(normalise(foot, zero), normalise(ahead, zero));
+    const ahead = cross(above, subtract(positions[rightUpperLeg]!, positions[leftUpperLeg]!));
+    for (const { foot, toes } of feet) {
+      const way = subtract(positions[toes]!, positions[foot]!);
+      const cosine = dot(normalise(way, zero), normalise(ahead, zero));
       if (Math.abs(cosine) < 0.5) continue;
       clear += 1;
       if (cosine < 0) back += 1;
@@ -180,8 +181,7 @@ export function facesBack(file: ImportedMotion, joints: StandingJoints): boolean
 }
 
 /** Returns the direction out of the body to a side, in a file's axes. */
-export const outward = (floor: Quat, side: 'left' | 'right'): Vec3 =>
-  rotate(conjugate(floor), scale(right, side === 'left' ? -1 : 1));
+export const outward = (floor: Quat, side: Side): Vec3 => rotate(conjugate(floor), scale(right, sideSign(side)));
 
 /** Returns the downward direction in a file's axes. */
 export const downward = (floor: Quat): Vec3 => rotate(conjugate(floor), down);

@@ -1,26 +1,27 @@
 import { type BoneMap, type BoneName, neededBones } from '../humanoid/bones';
 import { type BoneMatch, type HumanoidMatch, humanoidProblem, matchHumanoid } from '../humanoid/match-humanoid';
 import { type FileBones, fileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
-import { type Side, sides } from '../math/side';
+import { rotate } from '../math/quat';
+import { sides } from '../math/side';
 import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
 import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
 import {
   axesOfTrunk,
   axisIn,
   type BodyAxes,
+  type BodyJoints,
   defaultFloor,
-  downward,
   facesBack,
   floorOfMotion,
   otherUp,
   outward,
-  type StandingJoints,
   turnBetween,
 } from './body-axes';
 import { handsOfCmuconvert } from './cmuconvert';
 import { withRestPose } from './mapped-motion';
+import { limbFault } from './rest-joints';
 import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from './skeleton-map';
-import { type Limbs, straightHands, straightRest } from './straight-rest';
+import { armOf, straightHands, straightRest } from './straight-rest';
 import { axisOfRoot, withTurnedRest } from './turned-rest';
 
 /** The fraction of the trunk above which its only joint is a chest, and below which it is a spine. */
@@ -84,42 +85,17 @@ function fractionOfTrunk(rest: readonly Vec3[], { hips, spine, neck, leftUpperAr
   return dot(subtract(at, low), trunk) / (dot(trunk, trunk) || 1);
 }
 
-function standingJoints(joints: Joints, match: Match): StandingJoints {
-  const pair = (part: 'UpperArm' | 'UpperLeg' | 'Foot' | 'Toes'): [number, number] => [
-    joints[`left${part}`] ?? -1,
-    joints[`right${part}`] ?? -1,
-  ];
-  return {
-    hips: joints.hips!,
-    neck: joints.neck ?? match.head!.joint,
-    ...{ upperArms: pair('UpperArm'), upperLegs: pair('UpperLeg'), feet: pair('Foot'), toes: pair('Toes') },
-  };
-}
+/** Returns the joints of a match by their bones; the head stands for a neck that the file lacks. */
+const bodyJoints = (match: Match): BodyJoints => ({
+  neck: match.head!.joint,
+  ...(Object.fromEntries(Object.entries(match).map(([bone, { joint }]) => [bone, joint])) as Record<'hips', number>),
+});
 
-function limbsOf(joints: Joints, match: Match): Limbs {
-  const at = (joint: TruthJoint): number => joints[joint] ?? -1;
-  const each = (limb: (side: Side) => readonly number[]) => ({ left: limb('left'), right: limb('right') });
-  return {
-    arms: each((side) => [
-      match[`${side}Shoulder`]?.joint ?? -1,
-      ...(['UpperArm', 'LowerArm', 'Hand'] as const).map((part) => at(`${side}${part}`)),
-    ]),
-    legs: each((side) => (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => at(`${side}${part}`))),
-  };
-}
-
-/** Returns whether arms at rest are straight and between level and hanging, and legs point down. */
-function restsAsPerson(rest: readonly Vec3[], { arms, legs }: Limbs, { turn }: BodyAxes): boolean {
-  const down = downward(turn);
-  const way = (from: number, to: number): Vec3 => normalise(subtract(rest[to]!, rest[from]!), zero);
-  return sides.every((side) => {
-    const [, shoulder, elbow, hand] = arms[side] as readonly [number, number, number, number];
-    const arm = way(shoulder, hand);
-    if (dot(arm, down) < -0.5 || dot(arm, outward(turn, side)) < -0.3) return false;
-    if (dot(way(shoulder, elbow), way(elbow, hand)) < 0) return false;
-    const [hip, knee, foot] = legs[side] as readonly [number, number, number];
-    return hip < 0 || knee < 0 || foot < 0 || dot(way(hip, foot), down) > 0.7;
-  });
+/** Returns whether the limbs at rest are those of a T-pose in axes in which the body stands. */
+function restsAsPerson(positions: readonly Vec3[], joints: BodyJoints, { turn }: BodyAxes): boolean {
+  const present = truthJoints.filter((joint) => joints[joint] !== undefined);
+  const rest = new Map(present.map((joint) => [joint, rotate(turn, positions[joints[joint]!]!)]));
+  return sides.every((side) => limbFault(rest, side) === null);
 }
 
 /** Returns the match with left and right exchanged. */
@@ -129,12 +105,12 @@ function exchanged(match: Match): Match {
 }
 
 /** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
-function firstFrame(file: ImportedMotion, joints: StandingJoints, limbs: Limbs): SkeletonPose | null {
+function firstFrame(file: ImportedMotion, joints: BodyJoints): SkeletonPose | null {
   const pose = file.pose(0, createSkeletonPose(file.names.length));
   const axes = axesOfTrunk(pose.positions, joints, true);
-  if (!axes || !restsAsPerson(pose.positions, limbs, axes)) return null;
+  if (!axes || !restsAsPerson(pose.positions, joints, axes)) return null;
   const level = sides.every((side) => {
-    const [, shoulder, elbow, hand] = limbs.arms[side] as readonly [number, number, number, number];
+    const [shoulder, elbow, hand] = armOf(joints, side);
     const out = outward(axes.turn, side);
     const points = (from: number, to: number): boolean =>
       dot(normalise(subtract(pose.positions[to]!, pose.positions[from]!), zero), out) > 0.95;
@@ -152,16 +128,15 @@ export function matchSkeleton(file: ImportedMotion, map?: BoneMap): MatchedMotio
   const { match, notes } = map ? { match: mappedJoints(file, map), notes: [] } : matchSides(file);
   const found = jointsOf(match, file);
   const { joints } = found;
-  const standing = standingJoints(joints, match);
-  const limbs = limbsOf(joints, match);
-  const upright = restAsMoved(file, standing);
-  const rested = restOf(upright.file, standing, limbs);
-  const hands = straightHands(rested.file, limbs.arms);
+  const body = bodyJoints(match);
+  const upright = restAsMoved(file, body);
+  const rested = restOf(upright.file, body);
+  const hands = straightHands(rested.file, body);
   const based = hands ? withRestPose(rested.file, hands.pose) : rested.file;
   notes.push(...found.notes, ...upright.notes, ...rested.notes, ...(hands?.notes ?? []));
   const { turn } = rested.axes;
   const floor = rested.stands ? turn : defaultFloor;
-  const up = otherUp(based, floor, standing);
+  const up = otherUp(based, floor, body);
   if (up)
     notes.push(
       `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
@@ -230,7 +205,7 @@ function matchSides(file: ImportedMotion): { readonly match: Match; readonly not
     { joint: file.names.indexOf(name), confidence: 1, reason: 'cmuconvert calls it so' },
   ]);
   const match = { ...found.map, ...Object.fromEntries(hands) };
-  if (!facesBack(file, standingJoints(jointsOf(match, file).joints, match))) return { match, notes: [...found.notes] };
+  if (!facesBack(file, bodyJoints(match))) return { match, notes: [...found.notes] };
   const note = 'the names of left and right are exchanged: the toes point back; the motion was followed';
   return { match: exchanged(match), notes: [...found.notes, note] };
 }
@@ -239,7 +214,7 @@ function matchSides(file: ImportedMotion): { readonly match: Match; readonly not
  * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone.
  * The root then keeps the height of the hips along another axis than that along which the rest stands.
  */
-function restAsMoved(file: ImportedMotion, joints: StandingJoints) {
+function restAsMoved(file: ImportedMotion, joints: BodyJoints) {
   const axes = axesOfTrunk(file.rest, joints)?.axes;
   const above = axes && axisOfRoot(file, joints, axes.above);
   if (!axes || !above) return { file, notes: [] };
@@ -248,15 +223,15 @@ function restAsMoved(file: ImportedMotion, joints: StandingJoints) {
 }
 
 /** Returns the motion relative to a rest in which a person stands. */
-function restOf(file: ImportedMotion, joints: StandingJoints, limbs: Limbs) {
+function restOf(file: ImportedMotion, joints: BodyJoints) {
   const axes = axesOfTrunk(file.rest, joints);
   const notes: string[] = [];
-  if (axes && restsAsPerson(file.rest, limbs, axes)) {
+  if (axes && restsAsPerson(file.rest, joints, axes)) {
     if (axes.axes && (axes.axes.above !== '+y' || axes.axes.ahead !== '+z'))
       notes.push(`it rests with ${axes.axes.above} up, facing ${axes.axes.ahead}`);
     return { file, axes, notes, stands: true };
   }
-  const first = firstFrame(file, joints, limbs);
+  const first = firstFrame(file, joints);
   if (first) {
     const based = withRestPose(file, first);
     notes.push('its bones at rest are no T-pose; the T-pose of its first frame was taken');
@@ -264,6 +239,6 @@ function restOf(file: ImportedMotion, joints: StandingJoints, limbs: Limbs) {
   }
   if (!axes)
     throw new Error('the rest pose is no T-pose: left and right lie on each other. Name a “restFrame” in a map');
-  const built = straightRest(file, limbs, axes.turn);
+  const built = straightRest(file, joints, axes.turn);
   return { file: withRestPose(file, built.pose), axes, notes: built.notes, stands: false };
 }

@@ -1,7 +1,7 @@
 import { sideSign } from '../body/skeleton';
 import { type Side, sides } from '../math/side';
 import { mean } from '../math/statistics';
-import { distance, dot, down, length, normalise, right, scale, subtract, up, type Vec3, zero } from '../math/vec3';
+import { distance, dot, down, length, normalise, right, subtract, up, type Vec3, zero } from '../math/vec3';
 import mocapRules from './mocap-rules.json' with { type: 'json' };
 import type { MappedSkeleton, TruthJoint } from './skeleton-map';
 
@@ -58,6 +58,28 @@ function shownVector({ x, y, z }: Vec3): string {
 }
 
 /**
+ * Returns why the limbs of a side are not those of a T-pose, as what they do and what they should; null: the arm is
+ * straight and between level and hanging, and the leg points down.
+ */
+export function limbFault(
+  rest: RestJoints,
+  side: Side,
+  nameOf: (joint: TruthJoint) => string = String,
+): readonly [what: string, should: string] | null {
+  const [shoulder, elbow, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
+  const [hip, foot] = [`${side}UpperLeg`, `${side}Foot`] as const;
+  const way = (from: TruthJoint, to: TruthJoint): Vec3 => direction(subtract(rest.get(to)!, rest.get(from)!));
+  const points = (limb: string, from: TruthJoint, to: TruthJoint): string =>
+    `the ${side} ${limb}, ${nameOf(from)} to ${nameOf(to)}, points ${shownVector(way(from, to))}`;
+  const arm = way(shoulder, hand);
+  if (dot(arm, up) > 0.5 || sideSign(side) * arm.x < -0.3) return [points('arm', shoulder, hand), 'sideways'];
+  if (dot(way(shoulder, elbow), way(elbow, hand)) < 0)
+    return [`the ${side} arm is folded at ${nameOf(elbow)}`, 'straight'];
+  const stands = !rest.has(hip) || !rest.has(foot) || dot(way(hip, foot), down) > 0.7;
+  return stands ? null : [points('leg', hip, foot), 'down'];
+}
+
+/**
  * Throws a sentence where joints at rest are no person in T-pose, with arms anywhere between level and hanging: a bone
  * of no length, a trunk that lies, shoulders that are not left and right, raised or folded arms, legs that do not
  * stand.
@@ -84,19 +106,10 @@ export function checkRest(rest: RestJoints, { joints: names }: Pick<MappedSkelet
     refuse(`the shoulders, ${nameOf('leftUpperArm')} and ${nameOf('rightUpperArm')}, ${so}`, 'left and right');
   }
   for (const side of sides) {
-    const outward = scale(right, sideSign(side));
     const [shoulder, elbow, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
     bone(shoulder, elbow, `the ${side} arm`);
     bone(elbow, hand, `the ${side} arm`);
-    const arm = direction(subtract(at(hand), at(shoulder)));
-    if (dot(arm, up) > 0.5 || dot(arm, outward) < -0.3)
-      refuse(`the ${side} arm, ${nameOf(shoulder)} to ${nameOf(hand)}, points ${shownVector(arm)}`, 'sideways');
-    if (dot(direction(subtract(at(elbow), at(shoulder))), direction(subtract(at(hand), at(elbow)))) < 0)
-      refuse(`the ${side} arm is folded at ${nameOf(elbow)}`, 'straight');
-    const [hip, foot] = [`${side}UpperLeg`, `${side}Foot`] as const;
-    if (!rest.has(hip) || !rest.has(foot)) continue;
-    const leg = direction(subtract(at(foot), at(hip)));
-    if (dot(leg, down) < 0.7)
-      refuse(`the ${side} leg, ${nameOf(hip)} to ${nameOf(foot)}, points ${shownVector(leg)}`, 'down');
+    const fault = limbFault(rest, side, nameOf);
+    if (fault) refuse(...fault);
   }
 }

@@ -3,7 +3,7 @@ import { quantile } from '../math/statistics';
 import { parentsFirst } from '../math/tree';
 import { add, dot, subtract, type Vec3, vec3 } from '../math/vec3';
 import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
-import { type StandingJoints, sampledFrames, trunkDirection } from './body-axes';
+import { axisNames, type BodyJoints, sampledFrames, trunkDirection } from './body-axes';
 import { directions } from './read-skeleton-map';
 import type { FileAxis } from './skeleton-map';
 
@@ -14,11 +14,10 @@ const nearHeight = 0.2;
  * Returns the axis along which the root keeps the height of the hips if that is not the axis along which the body
  * stands, at rest and in its frames; null: it is, or no axis fits.
  */
-export function axisOfRoot(file: ImportedMotion, joints: StandingJoints, restUp: FileAxis): FileAxis | null {
+export function axisOfRoot(file: ImportedMotion, joints: BodyJoints, restUp: FileAxis): FileAxis | null {
   const above = directions[restUp];
-  const [foot] = joints.feet;
-  if (foot < 0) return null;
-  const height = dot(subtract(file.rest[joints.hips]!, file.rest[foot]!), above);
+  if (joints.leftFoot === undefined) return null;
+  const height = dot(subtract(file.rest[joints.hips]!, file.rest[joints.leftFoot]!), above);
   const poses = createSkeletonPose(file.names.length);
   const places: Vec3[] = [];
   let standing = 0;
@@ -35,7 +34,7 @@ export function axisOfRoot(file: ImportedMotion, joints: StandingJoints, restUp:
     return off < nearHeight && quantile(values, 0.95) - quantile(values, 0.05) < 0.6 * height;
   };
   if (keeps(restUp)) return null;
-  return (Object.keys(directions) as FileAxis[]).find((axis) => axis !== restUp && keeps(axis)) ?? null;
+  return axisNames.find((axis) => axis !== restUp && keeps(axis)) ?? null;
 }
 
 /** Returns the motion with all offsets of its joints turned; rotations and the root's position stay. */

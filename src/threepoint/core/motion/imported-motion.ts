@@ -1,5 +1,9 @@
 import { type MutableQuat, quat } from '../math/quat';
-import { type MutableVec3, type Vec3, vec3 } from '../math/vec3';
+import { backward, type MutableVec3, right, up, type Vec3, vec3 } from '../math/vec3';
+
+// Not in the order of a vector's fields: see `Vec3`.
+/** The axes by the names that files give them. */
+export const unitAxes: Readonly<Record<'x' | 'y' | 'z', Vec3>> = { z: backward, y: up, x: right };
 
 /** The positions of a skeleton's joints, and their rotations from the rest pose, by the joint's index. */
 export interface SkeletonPose {

@@ -1,5 +1,6 @@
 import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
-import { backward, normalise, readVec3, right, scale, up, type Vec3, zero } from '../math/vec3';
+import { normalise, readVec3, scale, type Vec3, zero } from '../math/vec3';
+import { unitAxes } from './imported-motion';
 import { Lines, shown, type Word } from './lines';
 
 /** A bone at rest, which starts at the end of its parent; in the file's unit and axes. */
@@ -29,8 +30,6 @@ export interface AsfSkeleton {
 
 /** The largest number of bones of a human skeleton. */
 const maxBones = 2000;
-// Not in the order of a vector's fields: see `Vec3`.
-const axes = { z: backward, y: up, x: right };
 const turn = quat(0, 0, 0, 1);
 
 /** Writes the rotation by angles [rad] about x, y and z, applied in this order (“xyz”: R = Rz·Ry·Rx). */
@@ -39,7 +38,7 @@ export function fromEuler(angles: Vec3, order: string, target: MutableQuat = qua
   target.w = 1;
   for (const axis of order) {
     if (axis !== 'x' && axis !== 'y' && axis !== 'z') continue;
-    multiply(fromAxisAngle(axes[axis], angles[axis], turn), target, target);
+    multiply(fromAxisAngle(unitAxes[axis], angles[axis], turn), target, target);
   }
   return target;
 }

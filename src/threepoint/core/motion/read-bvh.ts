@@ -1,9 +1,9 @@
 import { fromAxisAngle, multiply, quat, rotate, setQuat } from '../math/quat';
-import { add, backward, copyVec3, right, up, type Vec3, vec3, zero } from '../math/vec3';
-import type { ImportedMotion, SkeletonPose } from './imported-motion';
+import { add, copyVec3, type Vec3, vec3, zero } from '../math/vec3';
+import { type ImportedMotion, type SkeletonPose, unitAxes } from './imported-motion';
 import { Lines, Rows, shown, type Word } from './lines';
 
-type Axis = 'x' | 'y' | 'z';
+type Axis = keyof typeof unitAxes;
 interface BvhChannel {
   /** `unused`: a position that only repeats the joint's offset, or none at all. */
   readonly kind: 'position' | 'rotation' | 'unused';
@@ -233,8 +233,6 @@ function withoutRepeatedPositions(motion: BvhMotion): BvhMotion {
   return { ...motion, joints, notes };
 }
 
-// Not in the order of a vector's fields: see `Vec3`.
-const axes: Readonly<Record<Axis, Vec3>> = { z: backward, y: up, x: right };
 const turn = quat(0, 0, 0, 1);
 const local = vec3(0, 0, 0);
 
@@ -249,7 +247,7 @@ export function poseBvh({ joints, width, values }: BvhMotion, frame: number, tar
       const value = values[column++]!;
       if (kind === 'position') local[axis] = value;
       else if (kind === 'rotation')
-        multiply(rotation, fromAxisAngle(axes[axis], (value * Math.PI) / 180, turn), rotation);
+        multiply(rotation, fromAxisAngle(unitAxes[axis], (value * Math.PI) / 180, turn), rotation);
     }
     if (parent < 0) copyVec3(local, position);
     else {

@@ -32,22 +32,15 @@ const points = [
   },
 ] as const;
 
-const position = { type: 'POS', units: 'm' };
-const orientation = { type: 'ORNT', units: absent };
-
-const components: readonly {
-  readonly component: string;
-  readonly type: string;
-  readonly units: string;
-  readonly of: (pose: TrackedPose) => number;
-}[] = [
-  { ...position, component: 'x', of: ({ position }) => position.x },
-  { ...position, component: 'y', of: ({ position }) => position.y },
-  { ...position, component: 'z', of: ({ position }) => position.z },
-  { ...orientation, component: 'quat_x', of: ({ orientation }) => orientation.x },
-  { ...orientation, component: 'quat_y', of: ({ orientation }) => orientation.y },
-  { ...orientation, component: 'quat_z', of: ({ orientation }) => orientation.z },
-  { ...orientation, component: 'quat_w', of: ({ orientation }) => orientation.w },
+const components = [
+  ...(['x', 'y', 'z'] as const).map((axis) => ({
+    ...{ component: axis, type: 'POS', units: 'm' },
+    of: ({ position }: TrackedPose): number => position[axis],
+  })),
+  ...(['x', 'y', 'z', 'w'] as const).map((axis) => ({
+    ...{ component: `quat_${axis}`, type: 'ORNT', units: absent },
+    of: ({ orientation }: TrackedPose): number => orientation[axis],
+  })),
 ];
 
 /** Every channel but the time, in the order of the columns. */

@@ -37,12 +37,14 @@ const joint = 'CHANNELS 3 Yrotation Xrotation Zrotation';
 /** The channels of a joint that is not measured: it keeps its rest. */
 const unmeasured = 'CHANNELS 0';
 
-/** Returns the lines of the hierarchy, bones indented below their parents. */
-function hierarchy(bones: readonly MotionBone[], format: (v: Vec3) => string): string[] {
+/** Returns the lines of the hierarchy, bones indented below their parents, and the bones in their order there. */
+function hierarchy(bones: readonly MotionBone[], format: (v: Vec3) => string) {
   const lines: string[] = ['HIERARCHY'];
+  const order: number[] = [];
   const write = (index: number, depth: number): void => {
     const { name, parent, offset, end, measured } = bones[index]!;
     const indent = '\t'.repeat(depth);
+    order.push(index);
     lines.push(`${indent}${parent < 0 ? 'ROOT' : 'JOINT'} ${name}`, `${indent}{`);
     lines.push(`${indent}\tOFFSET ${parent < 0 ? format(vec3(0, 0, 0)) : format(offset)}`);
     lines.push(`${indent}\t${parent < 0 ? root : measured ? joint : unmeasured}`);
@@ -51,18 +53,7 @@ function hierarchy(bones: readonly MotionBone[], format: (v: Vec3) => string): s
     lines.push(`${indent}}`);
   };
   write(0, 0);
-  return lines;
-}
-
-/** Returns the bones in depth-first order, in which a file lists them. */
-function fileOrder(bones: readonly MotionBone[]): readonly number[] {
-  const order: number[] = [];
-  const visit = (index: number): void => {
-    order.push(index);
-    for (const [child, bone] of bones.entries()) if (bone.parent === index) visit(child);
-  };
-  visit(0);
-  return order;
+  return { lines, order };
 }
 
 const framesPerStep = 64;
@@ -88,15 +79,16 @@ export function* writeBvh(
     return `${fixed(x, digits)} ${fixed(y, digits)} ${fixed(z, digits)}`;
   };
   const count = even.times.length;
-  const header = [...hierarchy(even.bones, format), 'MOTION', `Frames: ${count}`];
+  const { lines: skeleton, order } = hierarchy(even.bones, format);
+  const header = [...skeleton, 'MOTION', `Frames: ${count}`];
   const parts = [`${header.join('\n')}\nFrame Time: ${(1 / rateHz).toFixed(9)}\n`];
-  const order = fileOrder(even.bones).filter((index) => even.bones[index]!.measured);
+  const measured = order.filter((index) => even.bones[index]!.measured);
   const rotation = quat(0, 0, 0, 1);
   const angles = vec3(0, 0, 0);
   let lines = '';
   for (let frame = 0; frame < count; frame++) {
     const numbers = [format(hipsAt(even, frame, vec3(0, 0, 0)))];
-    for (const bone of order) {
+    for (const bone of measured) {
       const { x, y, z } = eulerYxz(rotationAt(even, frame, bone, rotation), angles);
       numbers.push(`${fixed(y * degrees, 5)} ${fixed(x * degrees, 5)} ${fixed(z * degrees, 5)}`);
     }

@@ -107,7 +107,7 @@ const keys: readonly Key[] = [
 ];
 
 /** Length of the loop [s]. */
-export const actorLoopSeconds = keys.at(-1)?.time ?? 0;
+const actorLoopSeconds = keys.at(-1)?.time ?? 0;
 
 /** Returns the minimum-jerk progress from 0 to 1, by which hands move between two points (Flash & Hogan 1985). */
 const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t);

@@ -32,10 +32,7 @@ export interface Recording<Frames extends TrackingFrames = readonly TrackingFram
 export type Replayable = Recording<TrackingFrames>;
 
 const format = 'threepoint-recording';
-/** The newest version of the format. Frames may have a device body from 3 on, and fingers from 2 on. */
-const version = 3;
-const fingersSince = 2;
-const bodySince = 3;
+const version = 1;
 
 const poseColumns = 7;
 /** The largest distance of what is tracked from the origin, along each axis [m]. */
@@ -113,17 +110,15 @@ export function writeRecordingWithin(
 export function parseRecording(text: string): Recording {
   const file = parseJson(text);
   if (!isObject(file) || file.format !== format) throw new Error('This file is not a threepoint recording.');
-  const written = file.version;
-  if (!isFiniteNumber(written) || !Number.isInteger(written) || written < 1 || written > version) {
-    throw new Error(`The recording has version ${String(written)}; this page reads versions 1 to ${version}.`);
-  }
+  if (file.version !== version)
+    throw new Error(`The recording has version ${String(file.version)}; this page reads version ${version}.`);
   if (typeof file.device !== 'string') throw new Error('The recording names no device.');
   if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording has no frame rate in Hz.');
   if (file.bodyJoints !== undefined && JSON.stringify(file.bodyJoints) !== JSON.stringify(deviceJointNames)) {
     throw new Error('The recording’s device body has other joints than this version reads.');
   }
   if (!Array.isArray(file.frames) || file.frames.length === 0) throw new Error('The recording has no frames.');
-  const frames = file.frames.map((frame, index) => parseFrame(frame, index, written));
+  const frames = file.frames.map(parseFrame);
   for (let i = 1; i < frames.length; i++) {
     if (frames[i]!.time <= frames[i - 1]!.time) {
       throw new Error(`Frame ${i + 1} of the recording is not later than the one before it.`);
@@ -183,12 +178,11 @@ function parseCalibration(value: unknown): Calibration | null {
   throw new Error('The recording’s calibration is neither null nor an eye height and an arm span in metres.');
 }
 
-function parseFrame(value: unknown, index: number, written: number): TrackingFrame {
+function parseFrame(value: unknown, index: number): TrackingFrame {
   const where = `Frame ${index + 1} of the recording`;
-  const lengths = [4, ...(written >= fingersSince ? [6] : []), ...(written >= bodySince ? [7] : [])];
-  if (!Array.isArray(value) || !lengths.includes(value.length)) {
-    const more = ['', ', with the fingers of both or without', ', with the fingers of both and a body or without'];
-    throw new Error(`${where} is not a time, a head, a left hand and a right hand${more[lengths.length - 1]}.`);
+  if (!Array.isArray(value) || ![4, 6, 7].includes(value.length)) {
+    const columns = 'a time, a head, a left hand and a right hand, with the fingers of both and a body or without';
+    throw new Error(`${where} is not ${columns}.`);
   }
   const [time, head, leftHand, rightHand, leftFingers, rightFingers, body] = value;
   if (!isFiniteNumber(time)) throw new Error(`${where} has no time.`);

@@ -24,7 +24,7 @@ import {
   type Vec3,
   vec3,
 } from '../../../../src/threepoint/core/math/vec3';
-import { evenly, seed } from '../arbitraries';
+import { direction, evenly, seed } from '../arbitraries';
 
 const bones: LimbBones = { upper: 0.28, lower: 0.26 };
 /** The direction through which an arm swings all the way round: to the right and ahead. */
@@ -41,10 +41,6 @@ const pathOf = (arms: readonly ArmDirections[]): number =>
     return metres + Math.max(distance(wristOf(to), wristOf(from)), distance(elbowOf(to), elbowOf(from)));
   }, 0);
 
-const direction = fc
-  .record({ x: evenly(-1, 1), y: evenly(-1, 1), z: evenly(-1, 1) })
-  .filter((v) => length(v) > 0.1)
-  .map((v) => normalise(v as Vec3));
 const arm = fc.record({ upperArm: direction, forearm: direction }).map(({ upperArm, forearm }): ArmDirections => {
   const normal = cross(upperArm, forearm);
   return { upperArm, forearm, hinge: normalise(normal, normalise(cross(upperArm, vec3(0.3, 0.5, 0.8)))) };
@@ -126,17 +122,37 @@ describe('an arm whose hand has jumped', () => {
     );
   });
 
-  test('turns each bone on, never back: to a direction that lies near', () => {
+  test('turns each bone by the shortest way, never back, to a direction that lies near', () => {
     fc.assert(
       fc.property(arm, arm, (from, wanted) => {
         fc.pre(Math.max(angle(from.upperArm, wanted.upperArm), angle(from.forearm, wanted.forearm)) < 2);
         const { arms } = drawn(from, () => wanted, 60, 1.5);
-        for (let i = 1; i < arms.length; i++) {
-          for (const bone of ['upperArm', 'forearm'] as const) {
+        for (const bone of ['upperArm', 'forearm'] as const) {
+          let turned = 0;
+          for (let i = 1; i < arms.length; i++) {
             const [now, before] = [arms[i]![bone], arms[i - 1]![bone]];
             expect(angle(now, wanted[bone])).toBeLessThan(angle(before, wanted[bone]) + 1e-6);
+            turned += angle(now, before);
           }
+          expect(turned).toBeCloseTo(angle(from[bone], wanted[bone]), 4);
         }
+      }),
+      { seed },
+    );
+  });
+
+  test('swings by the outside where it has to turn round', () => {
+    const straight = (upperArm: Vec3): ArmDirections => ({
+      ...{ upperArm, forearm: upperArm },
+      hinge: normalise(cross(upperArm, outside)),
+    });
+    fc.assert(
+      fc.property(direction, (way) => {
+        fc.pre(Math.abs(dot(way, outside)) < 0.9);
+        const { arms } = drawn(straight(way), () => straight(scale(way, -1)), 60, 1.5);
+        const halfWay = arms.filter(({ upperArm }) => Math.abs(dot(upperArm, way)) < 0.3);
+        expect(halfWay.length).toBeGreaterThan(0);
+        for (const { upperArm } of halfWay) expect(dot(upperArm, outside)).toBeGreaterThan(0);
       }),
       { seed },
     );

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { createEstimator, estimatedJoints, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { createEstimator, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -17,7 +17,7 @@ import {
 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { swivelAngle } from '../../../../bench/evaluate/measures';
-import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, type Joints, poseOf } from './drawn';
 import { standing, wristOrientation } from './moving-person';
@@ -68,9 +68,7 @@ describe('arms', () => {
         const frame = standing(calibration, hip.left, vec3(wrist.x, wrist.y, wrist.z));
         const upright = bodyOf(frame);
         const chest = at(upright, 'chest');
-        const joints = Object.fromEntries(
-          estimatedJoints.map((joint) => [joint, at(upright, joint)]),
-        ) as JointPositions;
+        const joints = mapJoints((joint) => at(upright, joint));
         const estimate = { ...joints, rightLowerArm: add(chest, inside as Vec3) };
         const solved = fitted(calibration)(completedFrame(frame, calibration), estimate, 0);
         const elbow = subtract(at(solved, 'rightLowerArm'), at(solved, 'chest'));
@@ -89,7 +87,7 @@ describe('arms', () => {
     const frame = standing(calibration, hip.left, ahead.right);
     const completed = completedFrame(frame, calibration);
     const upright = bodyOf(frame);
-    const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
+    const joints = mapJoints((joint) => at(upright, joint));
     const shoulder = joints.rightUpperArm;
     const wrist = ahead.right;
     const middle = vec3((shoulder.x + wrist.x) / 2, (shoulder.y + wrist.y) / 2, (shoulder.z + wrist.z) / 2);
@@ -131,17 +129,19 @@ describe('arms', () => {
     });
   });
 
+  /** A person whose right hand reaches ahead, palm inwards but for this roll [degrees]. */
+  function reaching(roll: number) {
+    const frame = standing(calibration, hip.left, ahead.right);
+    const orientation = multiply(
+      wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
+      fromAxisAngle(vec3(0, 0, 1), roll * degrees),
+    );
+    return { ...frame, rightHand: { ...frame.rightHand, orientation } };
+  }
+
   test('no wrist is wrung: the forearm takes its part of the hand’s turn', () => {
     for (const roll of [-80, -40, 0, 40, 80]) {
-      const frame = standing(calibration, hip.left, ahead.right);
-      const orientation = multiply(
-        wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
-        fromAxisAngle(vec3(0, 0, 1), roll * degrees),
-      );
-      const pose = poseOf(createEstimator('ik', calibration), {
-        ...frame,
-        rightHand: { ...frame.rightHand, orientation },
-      });
+      const pose = poseOf(createEstimator('ik', calibration), reaching(roll));
       const wrist = twistAngle(pose.body!.localRotations.rightHand, right);
       const forearm = twistAngle(pose.body!.localRotations.rightLowerArm, right);
       expect(Math.abs(wrist)).toBeLessThan(70 * degrees);
@@ -151,15 +151,11 @@ describe('arms', () => {
 
   test('a hand turns as its controller does, palm down, palm up and thumb up', () => {
     for (const roll of [-80, 0, 80]) {
-      const frame = standing(calibration, hip.left, ahead.right);
-      const orientation = multiply(
-        wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
-        fromAxisAngle(vec3(0, 0, 1), roll * degrees),
-      );
-      const joints = bodyOf({ ...frame, rightHand: { ...frame.rightHand, orientation } });
+      const frame = reaching(roll);
+      const joints = bodyOf(frame);
       // In T-pose the right hand's fingers point to +X: its wrist frame is turned by −90° about +Y.
       const shown = multiply(joints.rightHand.orientation, fromAxisAngle(up, -Math.PI / 2));
-      expect(shown).toBeSameRotationAs(orientation, 0.01);
+      expect(shown).toBeSameRotationAs(frame.rightHand.orientation, 0.01);
     }
   });
 

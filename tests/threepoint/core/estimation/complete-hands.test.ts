@@ -15,16 +15,12 @@ import { add, copyVec3, distance, length, up, type Vec3, vec3 } from '../../../.
 import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
+import { tracked } from './moving-person';
 
 const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 const body = chestSpaceBody(calibration);
 const skeleton = skeletonFromCalibration(calibration);
 const armLength = length(skeleton.restOffsets.rightLowerArm) + length(skeleton.restOffsets.rightHand);
-const tracked = (position: Vec3, orientation = identity): TrackedPose => ({
-  position,
-  orientation,
-  tracking: 'tracked',
-});
 const reach = vec3(0.2, 1.3, -0.45);
 
 const frame = (time: number, rightHand: TrackedPose | null, yaw = 0): TrackingFrame => ({
@@ -263,12 +259,6 @@ describe('a hand that returns', () => {
       expect(confidence[i]).toBeGreaterThanOrEqual(confidence[i - 1]!);
     }
     expect(confidence.at(-1)).toBe(1);
-  });
-
-  test.each([0.05, 0.2, 0.35, 1])('after %s s draws its arm back without a jump', (seconds) => {
-    const arms = drawn(lostFor(seconds), seconds + 1);
-    expect(largestDrawnStep(arms)).toBeLessThan(0.05);
-    expect(distance(arms.at(-1)!.wrist, returned)).toBeLessThan(1e-6);
   });
 
   test('is drawn there within 200 ms when it was not far', () => {

@@ -1,5 +1,5 @@
 import fc from 'fast-check';
-import { createEstimator, estimatedJoints, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { createEstimator, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -15,6 +15,8 @@ import {
 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
+import type { CompletedFrame } from '../../../../src/threepoint/core/estimation/complete-hands';
+import { type JointPositions, mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, poseOf } from './drawn';
 import { standing, transformFrame } from './moving-person';
@@ -22,11 +24,27 @@ import { standing, transformFrame } from './moving-person';
 const calibration = { eyeHeight: 1.62, armSpan: 1.53 };
 const skeleton = skeletonFromCalibration(calibration);
 const hip = { left: vec3(-0.22, 0.85, -0.05), right: vec3(0.22, 0.85, -0.05) };
+
+/** Fits 90 frames whose hips are estimated so far [m] aside of `under`, to one side and after 30 to the other. */
+function hipsAcross(
+  seen: CompletedFrame,
+  estimated: JointPositions,
+  under: Vec3,
+  { angle, metres }: { readonly angle: number; readonly metres: number },
+): readonly Vec3[] {
+  const aside = vec3(Math.sin(angle), 0, Math.cos(angle));
+  const fitBody = fitted(calibration);
+  return Array.from({ length: 90 }, (_, i) => {
+    const hips = addScaled(under, aside, i < 30 ? metres : -metres);
+    return copyVec3(fitBody(seen, { ...estimated, hips }, i ? 1 / 60 : 0).hips.position);
+  });
+}
+
 describe('hips under a chest that is too low for them to hang', () => {
   test('do not leap to its other side when they are estimated a little over there', () => {
     const below = fc.record({ angle: evenly(-3, 3), metres: evenly(0.005, 0.03), yaw: evenly(-3, 3) });
     fc.assert(
-      fc.property(below, ({ angle, metres, yaw }) => {
+      fc.property(below, ({ yaw, ...aside }) => {
         const elsewhere = { position: vec3(1, 0, -2), orientation: fromAxisAngle(up, yaw) };
         const upright = createEstimator('ik', calibration);
         const frame = transformFrame(elsewhere, standing(calibration, hip.left, hip.right));
@@ -41,17 +59,8 @@ describe('hips under a chest that is too low for them to hang', () => {
           },
           calibration,
         );
-        const estimated = Object.fromEntries(
-          estimatedJoints.map((joint) => [joint, lowered(joints[joint].position)]),
-        ) as Record<(typeof estimatedJoints)[number], Vec3>;
-        const aside = vec3(Math.sin(angle), 0, Math.cos(angle));
-        const fitBody = fitted(calibration);
-        const hips: Vec3[] = [];
-        for (let i = 0; i < 90; i++) {
-          const under = addScaled(add(estimated.chest, vec3(0, -0.1, 0)), aside, i < 30 ? metres : -metres);
-          const drawn = fitBody(seated, { ...estimated, hips: under }, i ? 1 / 60 : 0);
-          hips.push(copyVec3(drawn.hips.position));
-        }
+        const estimated = mapJoints((joint) => lowered(joints[joint].position));
+        const hips = hipsAcross(seated, estimated, add(estimated.chest, vec3(0, -0.1, 0)), aside);
         expect(distance(hips[29]!, hips[89]!)).toBeGreaterThan(0.3);
         expect(Math.max(...hips.slice(1).map((place, i) => distance(place, hips[i]!)))).toBeLessThan(0.03);
         expect(Math.min(...hips.map(({ y }) => y))).toBeGreaterThan(0.08);
@@ -65,28 +74,16 @@ describe('hips that are estimated almost at the chest joint', () => {
   test('swing to its other side when they are estimated there, and do not leap', () => {
     const near = fc.record({ angle: evenly(-3, 3), metres: evenly(0.03, 0.06), yaw: evenly(-3, 3) });
     fc.assert(
-      fc.property(near, ({ angle, metres, yaw }) => {
+      fc.property(near, ({ yaw, ...aside }) => {
         const elsewhere = { position: vec3(-1, 0, 2), orientation: fromAxisAngle(up, yaw) };
         const frame = transformFrame(elsewhere, standing(calibration, hip.left, hip.right));
         const body = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
-        const estimated = Object.fromEntries(
-          estimatedJoints.map((joint) => [joint, copyVec3(body[joint].position)]),
-        ) as Record<(typeof estimatedJoints)[number], Vec3>;
+        const estimated = mapJoints((joint) => copyVec3(body[joint].position));
         const seen = completedFrame(
           { head: frame.head, leftHand: frame.leftHand!, rightHand: frame.rightHand! },
           calibration,
         );
-        const aside = vec3(Math.sin(angle), 0, Math.cos(angle));
-        const fitBody = fitted(calibration);
-        const hips: Vec3[] = [];
-        for (let i = 0; i < 90; i++) {
-          const drawn = fitBody(
-            seen,
-            { ...estimated, hips: addScaled(estimated.chest, aside, i < 30 ? metres : -metres) },
-            i ? 1 / 60 : 0,
-          );
-          hips.push(copyVec3(drawn.hips.position));
-        }
+        const hips = hipsAcross(seen, estimated, estimated.chest, aside);
         expect(distance(hips[29]!, hips[89]!)).toBeGreaterThan(0.3);
         expect(Math.max(...hips.slice(1).map((place, i) => distance(place, hips[i]!)))).toBeLessThan(0.05);
       }),
@@ -98,10 +95,7 @@ describe('hips that are estimated almost at the chest joint', () => {
 describe('an arm that is stretched out', () => {
   const frame = standing(calibration, hip.left, hip.right);
   const body = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
-  const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, body[joint].position])) as Record<
-    (typeof estimatedJoints)[number],
-    Vec3
-  >;
+  const joints = mapJoints((joint) => body[joint].position);
   const shoulder = joints.rightUpperArm;
   const { upper, lower } = armBones(skeleton);
   const twoHands = { head: frame.head, leftHand: frame.leftHand!, rightHand: frame.rightHand! };

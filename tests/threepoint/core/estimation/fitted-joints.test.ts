@@ -21,7 +21,7 @@ function distancesFromTwin({ calibration, frames }: GoldenFit): readonly Apart[]
     const body = fitBody(calibration)(seen, joints, 0);
     const off = (joint: EstimatedJoint, index: number): number =>
       distance(body[joint].position, vec(fitted[index] ?? []));
-    return Object.fromEntries(estimatedJoints.map((joint, index) => [joint, off(joint, index)])) as Apart;
+    return mapJoints(off);
   });
 }
 

@@ -1,22 +1,20 @@
-import { type Quat, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { Gait, shippedGait } from '../../../../src/threepoint/core/estimation/gait/gait';
 import { GaitFeatures, type GaitPoints } from '../../../../src/threepoint/core/estimation/gait/gait-features';
 import { eyeHeight, standing, walking } from '../../avatar/walking-person';
+import { mirrorPoint, mirrorRotation } from './moving-person';
 
 type Person = (time: number) => GaitPoints;
 
-const mirrored = ({ x, y, z }: Vec3): Vec3 => vec3(-x, y, z);
-const mirroredTurn = ({ x, y, z, w }: Quat): Quat => ({ x, y: -y, z: -z, w });
 const mirrorOf =
   (person: Person): Person =>
   (time) => {
     const { hips, head, leftHand, rightHand } = person(time);
     return {
-      hips: { position: mirrored(hips.position), orientation: mirroredTurn(hips.orientation) },
-      head: { position: mirrored(head.position), orientation: mirroredTurn(head.orientation) },
-      leftHand: mirrored(rightHand),
-      rightHand: mirrored(leftHand),
+      hips: { position: mirrorPoint(hips.position), orientation: mirrorRotation(hips.orientation) },
+      head: { position: mirrorPoint(head.position), orientation: mirrorRotation(head.orientation) },
+      leftHand: mirrorPoint(rightHand),
+      rightHand: mirrorPoint(leftHand),
     };
   };
 

@@ -1,12 +1,11 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
-import { estimatedJoints } from '../../../../src/threepoint/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
 import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
 import { completeHands, makeCompleteHandsState } from '../../../../src/threepoint/core/estimation/complete-hands';
 import { createEstimator } from '../../../../src/threepoint/core/estimation/estimators';
-import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
 import { nextRandom } from '../../../../src/threepoint/core/math/random';
 import { add, addScaled, distance, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
@@ -168,9 +167,7 @@ describe('a hand that is lost', () => {
         for (let i = 0; i < 120; i++) {
           const seen = i < 20 || i >= 50;
           const frame = { ...standing(calibration, hip.left, hand as Vec3), time: i / 60 };
-          const joints = Object.fromEntries(
-            estimatedJoints.map((joint) => [joint, near(at(upright, joint))]),
-          ) as JointPositions;
+          const joints = mapJoints((joint) => near(at(upright, joint)));
           const deltaSeconds = i ? 1 / 60 : 0;
           const tracked = seen ? frame : { ...frame, rightHand: null };
           const drawn = fitBody(completeHands(hands, frame.head, tracked, body, deltaSeconds), joints, deltaSeconds);

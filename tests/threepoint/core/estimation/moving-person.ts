@@ -1,7 +1,14 @@
 import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
 import { chestSpaceBody, sideSign } from '../../../../src/threepoint/core/body/skeleton';
 import { type Frame, type TrackedPose, type Transform, transformPose } from '../../../../src/threepoint/core/math/pose';
-import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import {
+  fromAxes,
+  fromAxisAngle,
+  identity,
+  multiply,
+  type Quat,
+  rotate,
+} from '../../../../src/threepoint/core/math/quat';
 import { createRandom } from '../../../../src/threepoint/core/math/random';
 import type { Side } from '../../../../src/threepoint/core/math/side';
 import {
@@ -25,7 +32,9 @@ export interface Standpoint {
   readonly yaw: number;
 }
 
-const tracked = (position: Vec3, orientation: Quat): TrackedPose => ({ position, orientation, tracking: 'tracked' });
+export const tracked = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
+  ...{ position, orientation, tracking: 'tracked' },
+});
 
 /** The wrist's frame when the fingers point along `fingers` and the back of the hand along `back`. */
 export function wristOrientation(fingers: Vec3, back: Vec3): Quat {

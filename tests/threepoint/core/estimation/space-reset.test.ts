@@ -7,24 +7,13 @@ import {
   jointNames,
   type PoseEstimator,
   skeletonFromCalibration,
-  type TrackingFrame,
 } from 'threepoint/core';
-import {
-  copyQuat,
-  copyVec3,
-  distance,
-  fromAxisAngle,
-  sides,
-  type TrackedPose,
-  type Transform,
-  transformPose,
-  up,
-  vec3,
-} from 'threepoint/math';
+import { copyQuat, copyVec3, distance, fromAxisAngle, sides, type Transform, up, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { Pipeline } from '../../../../src/threepoint/core/estimation/pipeline';
 import { reportFigures } from '../../../reliability/report-figures';
 import { show } from './drawn';
+import { transformFrame } from './moving-person';
 import { openShippedModel } from './shipped-models';
 
 /** The floor frame after the device has recentred: turned by a quarter turn and moved by 1 m. */
@@ -32,13 +21,6 @@ const newFromOld: Transform<'floor', 'floor'> = {
   position: vec3(1, 0, 0),
   orientation: fromAxisAngle(up, Math.PI / 2),
 };
-const moved = (pose: TrackedPose): TrackedPose => ({ ...transformPose(newFromOld, pose), tracking: pose.tracking });
-const recentred = (frame: TrackingFrame): TrackingFrame => ({
-  time: frame.time,
-  head: moved(frame.head),
-  leftHand: frame.leftHand && moved(frame.leftHand),
-  rightHand: frame.rightHand && moved(frame.rightHand),
-});
 
 /** Copies the tilts of the hands to another estimator: a recentre resets all other state. */
 function holdAlike(from: PoseEstimator, to: PoseEstimator): void {
@@ -66,7 +48,7 @@ test('a reset space leaves no body on the way: the first frame is a newcomer’s
     estimator.reset();
     holdAlike(estimator, fresh);
     for (let i = 90; i < 110; i++) {
-      const frame = recentred(actorFrame(4 + i / 72, defaultCalibration));
+      const frame = transformFrame(newFromOld, actorFrame(4 + i / 72, defaultCalibration));
       const [pose, expected] = [await show(estimator, frame), await show(fresh, frame)];
       if (!pose.body || !expected.body) continue;
       const [joints, same] = [forwardKinematics(skeleton, pose.body), forwardKinematics(skeleton, expected.body)];

@@ -1,10 +1,9 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { estimatedJoints, type JointName } from '../../../../src/threepoint/core/body/joints';
+import type { JointName } from '../../../../src/threepoint/core/body/joints';
 import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import type { JointPositions } from '../../../../src/threepoint/core/estimation/joint-positions';
+import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { limitJoints, makeLimitJointsState } from '../../../../src/threepoint/core/estimation/limit-joints';
-import type { TrackedPose } from '../../../../src/threepoint/core/math/pose';
 import { angleBetween, identity, rotate } from '../../../../src/threepoint/core/math/quat';
 import {
   add,
@@ -21,7 +20,7 @@ import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tra
 import { evenly, seed } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 import { completedFrame, fitted, type Joints } from './drawn';
-import { standing } from './moving-person';
+import { standing, tracked } from './moving-person';
 import { ahead, at, bentBy, bodyOf, calibration, degrees, hip } from './posed-body';
 
 describe('elbow and trunk', () => {
@@ -54,7 +53,7 @@ describe('elbow and trunk', () => {
 
 describe('the trunk', () => {
   const looking = (angles: Vec3, position = vec3(0, 1.62, 0)): TrackingFrame => {
-    const head: TrackedPose = { position, orientation: fromEulerYxz(angles), tracking: 'tracked' };
+    const head = tracked(position, fromEulerYxz(angles));
     return { ...standing(calibration, hip.left, hip.right), head };
   };
   const facing = (joints: Joints, joint: JointName): Vec3 => rotate(joints[joint].orientation, vec3(0, 0, -1));
@@ -94,15 +93,11 @@ describe('the trunk', () => {
 
   test('an estimate that turns about under a head on its side turns no person about', () => {
     const upright = bodyOf(standing(calibration, ahead.left, ahead.right));
-    const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
+    const joints = mapJoints((joint) => at(upright, joint));
     const bowed = { ...joints, hips: add(joints.hips, vec3(0, 0, 0.3)), chest: add(joints.chest, vec3(0, 0, 0.15)) };
     const bent = { ...joints, hips: add(joints.hips, vec3(0, 0, -0.3)), chest: add(joints.chest, vec3(0, 0, -0.15)) };
     const longestStep = (roll: number): number => {
-      const head: TrackedPose = {
-        position: vec3(0, 1.62, 0),
-        orientation: fromEulerYxz(vec3(0, 0, roll)),
-        tracking: 'tracked',
-      };
+      const head = tracked(vec3(0, 1.62, 0), fromEulerYxz(vec3(0, 0, roll)));
       const completed = completedFrame({ ...standing(calibration, ahead.left, ahead.right), head }, calibration);
       const limited = makeLimitJointsState();
       const fitBody = fitted(calibration);

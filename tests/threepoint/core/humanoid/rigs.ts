@@ -102,12 +102,6 @@ function limbs(chest: string, hips: string, arm: readonly string[], leg: readonl
 const pinky = (finger: string): string => (finger === 'little' ? 'pinky' : finger);
 const capital = (word: string): string => word[0]!.toUpperCase() + word.slice(1);
 
-const xsens = limbs(
-  'Chest4',
-  'Hips',
-  ['$Collar', '$Shoulder', '$Elbow', '$Wrist'],
-  ['$Hip', '$Knee', '$Ankle', '$Toe'],
-);
 const mixamoLimbs = (prefix: string, chest: string): readonly Line[] =>
   limbs(
     chest,
@@ -320,7 +314,12 @@ export const rigs: readonly Rig[] = [
       ),
     ],
   ),
-  rig('Xsens MVN', words, trunk('Hips', ['Chest', 'Chest2', 'Chest3', 'Chest4'], ['Neck'], 'Head'), xsens),
+  rig(
+    'Xsens MVN and 100STYLE',
+    words,
+    trunk('Hips', ['Chest', 'Chest2', 'Chest3', 'Chest4'], ['Neck'], 'Head'),
+    limbs('Chest4', 'Hips', ['$Collar', '$Shoulder', '$Elbow', '$Wrist'], ['$Hip', '$Knee', '$Ankle', '$Toe']),
+  ),
   rig(
     'Rokoko',
     words,
@@ -333,7 +332,6 @@ export const rigs: readonly Rig[] = [
     trunk('Hips', ['Spine', 'Spine1', 'Spine2'], ['Neck'], 'Head'),
     limbs('Spine2', 'Hips', ['$Shoulder', '$Arm', '$ForeArm', '$Hand'], ['$UpLeg', '$Leg', '$Foot', '$Toe']),
   ),
-  rig('100STYLE', words, trunk('Hips', ['Chest', 'Chest2', 'Chest3', 'Chest4'], ['Neck'], 'Head'), xsens),
   rig(
     'SMPL',
     letters,

@@ -11,7 +11,7 @@ import { type FbxNode, fbxBinary, fbxText } from '../../avatar/fbx-file';
 import { glbOf, partsOf } from '../../avatar/glb';
 import { mixamo } from '../../avatar/rig-namings';
 import { seed } from '../arbitraries';
-import { actingPerson, bytesOf } from '../motion/moved-person';
+import { actingPerson, bytesOf, firstFrames } from '../motion/moved-person';
 import { goldenMocap, sourceOf } from './golden-mocap';
 import { madeBvh } from './made-bvh';
 
@@ -73,15 +73,7 @@ function glbWith(file: Uint8Array, { huge, place }: Change): ArrayBuffer {
   return glbOf(json, bytes);
 }
 
-const { motion } = actingPerson(1);
-const short = {
-  ...motion,
-  times: motion.times.slice(0, frames),
-  hips: motion.hips.slice(0, 3 * frames),
-  rotations: motion.rotations.slice(0, 4 * motion.measured * frames),
-  seen: motion.seen.slice(0, frames),
-};
-const vrma = bytesOf(writeVrma(short));
+const vrma = bytesOf(writeVrma(firstFrames(actingPerson(1).motion, frames)));
 const glb = new Uint8Array(
   await (await import('../../../../src/threepoint/avatar/file/convert-to-glb')).convertToGlb(
     fbxBinary(nodes),

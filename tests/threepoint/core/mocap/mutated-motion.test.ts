@@ -5,13 +5,12 @@ import { type MocapSource, prepareMocap } from '../../../../src/threepoint/core/
 import { finishWork } from '../../../../src/threepoint/core/motion/work';
 import { writeVrma } from '../../../../src/threepoint/core/motion/write-vrma';
 import { reportFigures } from '../../../reliability/report-figures';
-import { mutatedFiles, mutationSeed, ReadingCosts } from '../../mutated-files';
-import { actingPerson, bytesOf } from '../motion/moved-person';
+import { choicesBy, containersIn, mutatedFiles, mutationSeed, ReadingCosts } from '../../mutated-files';
+import { actingPerson, bytesOf, firstFrames } from '../motion/moved-person';
 import { madeBvh } from './made-bvh';
 
 let chance = createRandom(0);
-const below = (end: number): number => Math.floor(chance() * end);
-const oneOf = <T>(values: readonly T[]): T => values[below(values.length)]!;
+const { below, oneOf, flipBits } = choicesBy(() => chance());
 
 /** Reads spoiled files; each is refused in a sentence or becomes finite trackers, with a second of work at most. */
 async function readAll(format: string, count: number, spoil: () => MocapSource & { readonly bytes: number }) {
@@ -101,25 +100,12 @@ test('spoiled BVH files are refused in a sentence or read as finite numbers, in 
 test('spoiled VRM Animations are refused in a sentence or read as finite numbers, in a moment', {
   timeout: 3_600_000,
 }, () => {
-  const { motion } = actingPerson(1);
-  const frames = 44;
-  const short = {
-    ...motion,
-    times: motion.times.slice(0, frames),
-    hips: motion.hips.slice(0, 3 * frames),
-    rotations: motion.rotations.slice(0, 4 * motion.measured * frames),
-    seen: motion.seen.slice(0, frames),
-  };
-  const { json, binary } = readGlbChunks(bytesOf(writeVrma(short)))!;
+  const { json, binary } = readGlbChunks(bytesOf(writeVrma(firstFrames(actingPerson(1).motion, 44))))!;
   const odd: readonly unknown[] = [null, true, '', [], {}, [null], -1, 0, 0.5, 1e9, 2 ** 31, 1e308, 'VEC3', 5126];
-  const containersIn = (value: unknown): (Record<string, unknown> | unknown[])[] =>
-    typeof value === 'object' && value !== null
-      ? [value as Record<string, unknown>, ...Object.values(value).flatMap(containersIn)]
-      : [];
   return readAll('vrma', mutatedFiles(500), () => {
     const description: unknown = JSON.parse(json);
     const bytes = new Uint8Array(binary.slice());
-    if (chance() < 0.3) for (let i = 1 + below(8); i > 0; i--) bytes[below(bytes.length)]! ^= 1 << below(8);
+    if (chance() < 0.3) flipBits(bytes, 1 + below(8));
     else {
       for (let i = 1 + below(3); i > 0; i--) {
         const container = oneOf(containersIn(description)) as Record<string, unknown>;

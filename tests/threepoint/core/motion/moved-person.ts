@@ -136,6 +136,14 @@ export function actingPerson(seconds = 4): MovedPerson {
   return { motion: taker.finish(), truth };
 }
 
+/** The first frames of a motion. */
+export const firstFrames = (motion: Motion, count: number): Motion => ({
+  ...motion,
+  times: motion.times.slice(0, count),
+  hips: motion.hips.slice(0, 3 * count),
+  rotations: motion.rotations.slice(0, 4 * motion.measured * count),
+  seen: motion.seen.slice(0, count),
+});
 /** The text of parts that work makes. */
 export const textOf = (work: Generator<number, readonly string[]>): string => finishWork(work).join('');
 

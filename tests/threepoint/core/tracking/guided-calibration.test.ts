@@ -1,15 +1,15 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import { makeUpperBodyPose } from '../../../../src/threepoint/core/body/avatar-pose';
 import type { Calibration } from '../../../../src/threepoint/core/body/calibration';
-import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
-import { jointNames } from '../../../../src/threepoint/core/body/joints';
+import { forwardKinematics, type JointPoses } from '../../../../src/threepoint/core/body/forward-kinematics';
 import { legProportions } from '../../../../src/threepoint/core/body/leg-proportions';
-import { armLength, averageSkeleton } from '../../../../src/threepoint/core/body/skeleton';
+import { armLength, averageSkeleton, type Skeleton } from '../../../../src/threepoint/core/body/skeleton';
 import { trackerNames } from '../../../../src/threepoint/core/body/tracker-offsets';
 import { createIk } from '../../../../src/threepoint/core/estimation/estimators';
 import { pinning } from '../../../../src/threepoint/core/estimation/pinning';
 import { type Frame, type Pose, type TrackedPose, transformPose } from '../../../../src/threepoint/core/math/pose';
-import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../../src/threepoint/core/math/quat';
+import { fromAxisAngle, identity, multiply, type Quat } from '../../../../src/threepoint/core/math/quat';
 import { add, distance, right, up, type Vec3, vec3 } from '../../../../src/threepoint/core/math/vec3';
 import {
   type GuidedCalibration,
@@ -18,13 +18,11 @@ import {
 } from '../../../../src/threepoint/core/tracking/guided-calibration';
 import type { BodyTrackers, TrackingFrame } from '../../../../src/threepoint/core/tracking/tracking-frame';
 import { evenly, seed, standpoint } from '../arbitraries';
+import { tracked } from '../estimation/moving-person';
 import { trackersOn, wornOffsets } from '../estimation/tracked-body';
 
-const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
-  position,
-  orientation,
-  tracking: 'tracked',
-});
+const atRest = (skeleton: Skeleton): JointPoses =>
+  forwardKinematics(skeleton, { ...makeUpperBodyPose(), hipsPosition: skeleton.restOffsets.hips });
 
 /**
  * A person of this body, upright at the origin, with both arms straight along `direction` (right side) from the
@@ -36,11 +34,7 @@ function stretched(
   bentTo = 1,
 ): Omit<TrackingFrame, 'time'> {
   const skeleton = averageSkeleton(calibration);
-  const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
-    (typeof jointNames)[number],
-    Quat
-  >;
-  const joints = forwardKinematics(skeleton, { hipsPosition: skeleton.restOffsets.hips, localRotations: upright });
+  const joints = atRest(skeleton);
   const eyes = add(joints.head.position, skeleton.eyesInHead);
   const moved = vec3(-eyes.x, calibration.eyeHeight - eyes.y, -eyes.z);
   const arm = armLength(calibration) * bentTo;
@@ -52,10 +46,10 @@ function stretched(
       sideways: vec3(sigma * arm, 0, 0),
       'down and out': vec3(sigma * arm * Math.SQRT1_2, -arm * Math.SQRT1_2, 0),
     };
-    return pose(add(shoulder, along[direction]));
+    return tracked(add(shoulder, along[direction]));
   };
   return {
-    head: pose(vec3(0, calibration.eyeHeight, 0)),
+    head: tracked(vec3(0, calibration.eyeHeight, 0)),
     leftHand: wrist('left'),
     rightHand: wrist('right'),
   };
@@ -72,6 +66,11 @@ function guide(at: (seconds: number) => Omit<TrackingFrame, 'time'>, rateHz = 72
 const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 const longArmed: Calibration = { eyeHeight: 1.6, armSpan: 1.65 };
 
+/** The measures of a calibration that is done. */
+const measured = (state: GuidedCalibration): Calibration => {
+  if (state.kind !== 'done') throw new Error(JSON.stringify(state));
+  return state.calibration;
+};
 const refused = (state: GuidedCalibration): string => {
   if (state.kind !== 'failed') throw new Error(`expected a refusal, got ${state.kind}`);
   return state.reason;
@@ -90,17 +89,17 @@ describe('the guided calibration', () => {
           const still = stretched(calibration, direction);
           const moved = (p: TrackedPose): TrackedPose => {
             const { position, orientation } = transformPose(there, p as Pose<Frame>);
-            return pose(position, orientation);
+            return tracked(position, orientation);
           };
           const state = guide(() => ({
             head: moved(still.head),
             leftHand: moved(still.leftHand!),
             rightHand: moved(still.rightHand!),
           }));
-          if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-          expect(Math.abs(state.calibration.eyeHeight - calibration.eyeHeight)).toBeLessThan(1e-9);
+          const found = measured(state);
+          expect(Math.abs(found.eyeHeight - calibration.eyeHeight)).toBeLessThan(1e-9);
           // Forward, the shoulders come along by a few centimetres, and bodies differ in how far.
-          expect(Math.abs(state.calibration.armSpan - calibration.armSpan)).toBeLessThan(0.05 * calibration.eyeHeight);
+          expect(Math.abs(found.armSpan - calibration.armSpan)).toBeLessThan(0.05 * calibration.eyeHeight);
         }),
         { seed },
       );
@@ -110,13 +109,12 @@ describe('the guided calibration', () => {
   test('a wild frame or two does not move the result', () => {
     const still = stretched(person, 'forward');
     const jitter = (seconds: number) => Math.round(seconds * 72) % 24 === 5;
-    const state = guide((seconds) =>
-      jitter(seconds) ? { ...still, head: pose(vec3(0, 1.63, 0)), rightHand: pose(vec3(0.6, 1, -0.4)) } : still,
+    const jittered = guide((seconds) =>
+      jitter(seconds) ? { ...still, head: tracked(vec3(0, 1.63, 0)), rightHand: tracked(vec3(0.6, 1, -0.4)) } : still,
     );
-    const clean = guide(() => still);
-    if (state.kind !== 'done' || clean.kind !== 'done') throw new Error(JSON.stringify([state, clean]));
-    expect(state.calibration.eyeHeight).toBeCloseTo(1.6, 6);
-    expect(state.calibration.armSpan).toBeCloseTo(clean.calibration.armSpan, 6);
+    const { eyeHeight, armSpan } = measured(jittered);
+    expect(eyeHeight).toBeCloseTo(1.6, 6);
+    expect(armSpan).toBeCloseTo(measured(guide(() => still)).armSpan, 6);
   });
 
   test('reports how much is done, and ends after two seconds', () => {
@@ -145,7 +143,11 @@ describe('the guided calibration', () => {
   });
 
   test.each<[string, (seconds: number) => Omit<TrackingFrame, 'time'>, RegExp]>([
-    ['the head moved', (s) => ({ ...stretched(person, 'forward'), head: pose(vec3(0.1 * s, 1.6, 0)) }), /head moved/],
+    [
+      'the head moved',
+      (s) => ({ ...stretched(person, 'forward'), head: tracked(vec3(0.1 * s, 1.6, 0)) }),
+      /head moved/,
+    ],
     ['no hand was seen', () => ({ ...stretched(person, 'forward'), leftHand: null, rightHand: null }), /not seen/],
     [
       'a hand was guessed by the device half of the time',
@@ -160,7 +162,7 @@ describe('the guided calibration', () => {
       'a hand waved',
       (s) => {
         const still = stretched(person, 'forward');
-        return { ...still, rightHand: pose(add(still.rightHand!.position, vec3(0, 0.2 * Math.sin(9 * s), 0))) };
+        return { ...still, rightHand: tracked(add(still.rightHand!.position, vec3(0, 0.2 * Math.sin(9 * s), 0))) };
       },
       /hands moved/,
     ],
@@ -168,8 +170,8 @@ describe('the guided calibration', () => {
       'the arms hung down',
       () => ({
         ...stretched(person, 'forward'),
-        leftHand: pose(vec3(-0.2, 0.8, 0)),
-        rightHand: pose(vec3(0.2, 0.8, 0)),
+        leftHand: tracked(vec3(-0.2, 0.8, 0)),
+        rightHand: tracked(vec3(0.2, 0.8, 0)),
       }),
       /forward/,
     ],
@@ -182,7 +184,7 @@ describe('the guided calibration', () => {
       'the eyes were on the floor',
       () => ({
         ...stretched(person, 'forward'),
-        head: pose(vec3(0, 1.6, 0), fromAxisAngle(right, -0.8)),
+        head: tracked(vec3(0, 1.6, 0), fromAxisAngle(right, -0.8)),
       }),
       /look/i,
     ],
@@ -193,15 +195,15 @@ describe('the guided calibration', () => {
 
   test.each([0.45, 0.55, 0.7])('a person who sits, or stands %d m low, is as tall as their arms say', (lower) => {
     const still = stretched(person, 'forward');
-    const sunk = (p: TrackedPose | null) => p && pose(add(p.position, vec3(0, -lower, 0)));
+    const sunk = (p: TrackedPose | null) => p && tracked(add(p.position, vec3(0, -lower, 0)));
     const state = guide(() => ({
       head: sunk(still.head)!,
       leftHand: sunk(still.leftHand),
       rightHand: sunk(still.rightHand),
     }));
-    if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-    expect(Math.abs(state.calibration.eyeHeight - person.eyeHeight)).toBeLessThan(0.15);
-    expect(Math.abs(state.calibration.armSpan - person.armSpan)).toBeLessThan(0.1);
+    const { eyeHeight, armSpan } = measured(state);
+    expect(Math.abs(eyeHeight - person.eyeHeight)).toBeLessThan(0.15);
+    expect(Math.abs(armSpan - person.armSpan)).toBeLessThan(0.1);
   });
 
   test('refuses when tracking was gone for most of the time', () => {
@@ -221,59 +223,38 @@ describe('the guided calibration', () => {
   });
 
   test('the measured arms are as long as the way from the shoulder to the wrist', () => {
-    const state = guide(() => stretched(person, 'sideways'));
-    if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-    const hand = rotate(identity, stretched(person, 'sideways').rightHand!.position);
-    expect(hand.x).toBeCloseTo(state.calibration.armSpan / 2, 2);
+    const { armSpan } = measured(guide(() => stretched(person, 'sideways')));
+    expect(stretched(person, 'sideways').rightHand!.position.x).toBeCloseTo(armSpan / 2, 2);
   });
 
   describe('the tilt of the headset', () => {
     const worn = (pitch: number, yaw = 0, direction: 'forward' | 'sideways' | 'down and out' = 'forward') => {
       const still = stretched(person, direction);
       const turn = multiply(fromAxisAngle(up, yaw), fromAxisAngle(right, pitch));
-      return guide(() => ({ ...still, head: { ...still.head, orientation: turn } }));
+      return measured(guide(() => ({ ...still, head: { ...still.head, orientation: turn } })));
     };
 
     test('is what it shows while its wearer looks where the arms point', () => {
-      for (const pitch of [-0.2, -0.05, 0.1]) {
-        const state = worn(pitch);
-        if (state.kind !== 'done') throw new Error('not measured');
-        expect(state.calibration.gazePitch).toBeCloseTo(pitch, 6);
-      }
+      for (const pitch of [-0.2, -0.05, 0.1]) expect(worn(pitch).gazePitch).toBeCloseTo(pitch, 6);
     });
 
     test.each(['sideways', 'down and out'] as const)('is measured with the arms %s', (direction) => {
-      for (const [yaw, pitch] of [
-        [0.1, 0.1],
-        [-0.3, undefined],
-      ] as const) {
-        const state = worn(0.1, yaw, direction);
-        if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-        if (pitch === undefined) expect(state.calibration).not.toHaveProperty('gazePitch');
-        else expect(state.calibration.gazePitch).toBeCloseTo(pitch, 6);
-      }
+      expect(worn(0.1, 0.1, direction).gazePitch).toBeCloseTo(0.1, 6);
+      expect(worn(0.1, -0.3, direction)).not.toHaveProperty('gazePitch');
     });
 
     test('is never assumed to be steeper than 15°', () => {
-      const state = worn(0.4);
-      if (state.kind !== 'done') throw new Error('not measured');
-      expect(state.calibration.gazePitch).toBeCloseTo(Math.PI / 12, 6);
+      expect(worn(0.4).gazePitch).toBeCloseTo(Math.PI / 12, 6);
     });
 
     test('is not measured on a person who reads a sheet beside them', () => {
-      const state = worn(-0.2, -0.2);
-      if (state.kind !== 'done') throw new Error('not measured');
-      expect(state.calibration).not.toHaveProperty('gazePitch');
+      expect(worn(-0.2, -0.2)).not.toHaveProperty('gazePitch');
     });
   });
 
   describe('the offsets of trackers', () => {
     const skeleton = averageSkeleton(person);
-    const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
-      (typeof jointNames)[number],
-      Quat
-    >;
-    const rest = forwardKinematics(skeleton, { hipsPosition: skeleton.restOffsets.hips, localRotations: upright });
+    const rest = atRest(skeleton);
     const eyes = add(rest.head.position, skeleton.eyesInHead);
     const underHead = ({ x, y, z }: Vec3) => vec3(x - eyes.x, y + person.eyeHeight - eyes.y, z - eyes.z);
     const hips = underHead(rest.hips.position);
@@ -290,7 +271,7 @@ describe('the guided calibration', () => {
     const there = { position: vec3(0.7, 0, -1.2), orientation: fromAxisAngle(up, 2.2) };
     const place = ({ position, orientation }: Pose<Frame>): TrackedPose => {
       const moved = transformPose(there, { position, orientation });
-      return pose(moved.position, moved.orientation);
+      return tracked(moved.position, moved.orientation);
     };
     const still = stretched(person, 'down and out');
     const moved = { head: place(still.head), leftHand: place(still.leftHand!), rightHand: place(still.rightHand!) };
@@ -299,13 +280,8 @@ describe('the guided calibration', () => {
       Object.entries(worn).map(([name, tracker]) => [name, place(tracker!)]),
     ) as Required<BodyTrackers>;
 
-    const offsetsOf = (state: GuidedCalibration) => {
-      if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-      return state.calibration.trackerOffsets;
-    };
-
     test('come back as they were worn, wherever the person stands', () => {
-      const offsets = offsetsOf(guide(() => ({ ...moved, trackers: placed })));
+      const offsets = measured(guide(() => ({ ...moved, trackers: placed }))).trackerOffsets;
       for (const name of trackerNames) {
         const offset = offsets?.[name];
         expect(offset!.orientation).toBeSameRotationAs(wornOffsets[name].orientation);
@@ -318,9 +294,7 @@ describe('the guided calibration', () => {
     });
 
     test('lead an estimator to the joints of the person who calibrated', () => {
-      const state = guide(() => ({ ...moved, trackers: placed }));
-      if (state.kind !== 'done') throw new Error(JSON.stringify(state));
-      const estimator = createIk(state.calibration, { pinning });
+      const estimator = createIk(measured(guide(() => ({ ...moved, trackers: placed }))), { pinning });
       const { body } = estimator.update({ ...moved, time: 0, trackers: placed }).pose;
       expect(distance(body!.hipsPosition, place(joints.hips).position)).toBeLessThan(1e-3);
     });
@@ -331,7 +305,7 @@ describe('the guided calibration', () => {
     });
 
     test('remain unknown for a tracker that moves, is lost or belongs elsewhere', () => {
-      const offsets = offsetsOf(
+      const { trackerOffsets } = measured(
         guide((seconds) => ({
           ...moved,
           trackers: {
@@ -342,16 +316,16 @@ describe('the guided calibration', () => {
           },
         })),
       );
-      expect(Object.keys(offsets!)).toEqual(['leftFoot']);
+      expect(Object.keys(trackerOffsets!)).toEqual(['leftFoot']);
     });
 
     test('remain unknown for the feet where the person sits', () => {
-      const sunk = (p: TrackedPose) => pose(add(p.position, vec3(0, -0.5, 0)), p.orientation);
+      const sunk = (p: TrackedPose) => tracked(add(p.position, vec3(0, -0.5, 0)), p.orientation);
       const sitting = { head: sunk(moved.head), leftHand: sunk(moved.leftHand), rightHand: sunk(moved.rightHand) };
       const hipsTracker = sunk(placed.hips!);
-      const offsets = offsetsOf(guide(() => ({ ...sitting, trackers: { ...placed, hips: hipsTracker } })));
-      expect(offsets).not.toHaveProperty('leftFoot');
-      expect(offsets).toHaveProperty('hips');
+      const { trackerOffsets } = measured(guide(() => ({ ...sitting, trackers: { ...placed, hips: hipsTracker } })));
+      expect(trackerOffsets).not.toHaveProperty('leftFoot');
+      expect(trackerOffsets).toHaveProperty('hips');
     });
   });
 
@@ -360,13 +334,10 @@ describe('the guided calibration', () => {
     /** Both hands turned in their own frames while the arms point ahead. */
     const held = (left: Quat, right: Quat) => ({
       ...still,
-      leftHand: pose(still.leftHand!.position, left),
-      rightHand: pose(still.rightHand!.position, right),
+      leftHand: tracked(still.leftHand!.position, left),
+      rightHand: tracked(still.rightHand!.position, right),
     });
-    const tiltsOf = (state: GuidedCalibration) => {
-      if (state.kind !== 'done') throw new Error('not measured');
-      return state.calibration.handTilts;
-    };
+    const tiltsOf = (state: GuidedCalibration) => measured(state).handTilts;
 
     test('are how controllers are held, arms and wrists straight', () => {
       const state = guide(() => held(fromAxisAngle(right, -0.4), fromAxisAngle(up, 0.3)));
