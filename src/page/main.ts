@@ -53,11 +53,13 @@ function run({ controls, stage, frame, body, timing, settings }: Page): void {
   stage.renderer.setAnimationLoop((timestampMs, deviceFrame) => loop(timestampMs, deviceFrame ?? undefined));
 }
 
-/** Shows the first body: the built-in avatar, moved by the best estimator that is available. */
-async function showFirstBody({ avatarShown, frame, loading }: Page): Promise<void> {
+/** Shows the first body: the built-in avatar, moved by IK. Nothing is drawn before, because nothing would be seen. */
+async function showFirstBody(page: Page): Promise<void> {
+  const { avatarShown, frame, loading } = page;
   await avatarShown;
   loading.mark('avatar');
   loading.report('the avatar', 1);
+  run(page);
   await frame.nextPicture();
   loading.bodyShown();
 }
@@ -108,13 +110,11 @@ async function start(): Promise<void> {
     void headset.enter(passthrough);
   };
   const enterButton = createEnterButton(pageElement('enter', HTMLElement), enter);
-  run(page);
-
-  // The network loads in parallel to the avatar, and IK draws until it is ready.
+  await showFirstBody(page);
+  // IK draws until the network is ready. It has 3 MB and its own thread, which the first body need not share.
   const sessionsOffered = offerSessions(headset, enterButton, switches.study !== null);
   const chosen = body.setEstimator(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
-  await showFirstBody(page);
   await Promise.all([chosen, sessionsOffered, openFromAddress(page)]);
   await joinStudyOfAddress(page);
   loading.finish();

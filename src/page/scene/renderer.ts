@@ -68,8 +68,8 @@ export function reduceEmulatedResolution(renderer: WebGLRenderer, quality: Quali
 /** Fits the drawing buffer to the window; a headset's own buffer is none of its business. */
 export function fitToWindow(renderer: WebGLRenderer, quality: Quality): void {
   if (renderer.xr.isPresenting) return;
-  renderer.setPixelRatio(quality === 'high' ? Math.min(window.devicePixelRatio, 2) : lowPixelRatio);
-  renderer.setSize(window.innerWidth, window.innerHeight, false);
+  const pixelRatio = quality === 'high' ? Math.min(window.devicePixelRatio, 2) : lowPixelRatio;
+  renderer.setDrawingBufferSize(window.innerWidth, window.innerHeight, pixelRatio);
 }
 
 /** Creates the camera of a session. The headset places it; this sets its near and far planes only. */

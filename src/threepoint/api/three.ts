@@ -1,5 +1,5 @@
 // "threepoint/three": draws the body as an avatar in three.js, driven by a WebXR session.
-export { type Avatar, createAvatarBetweenFrames } from '../avatar/avatar';
+export { type Avatar, createAvatar, createAvatarBetweenFrames } from '../avatar/avatar';
 export { bodyLabelOf, bodyLabels } from '../avatar/built-in-body-labels';
 export { ContactShadow } from '../avatar/contact-shadow';
 export { createDebugSkeleton } from '../avatar/debug-skeleton';

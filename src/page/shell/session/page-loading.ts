@@ -1,10 +1,10 @@
 import { pageElement } from 'threepoint-ui';
 
-/** What must load before the first body is drawn, and its share of the progress. */
+/** What loads, in this order, and its share of the progress. */
 const steps = [
   { name: 'the avatar', weight: 3 },
-  { name: 'the network', weight: 3 },
   { name: 'the first picture', weight: 1 },
+  { name: 'the network', weight: 3 },
 ] as const;
 type StepName = (typeof steps)[number]['name'];
 
@@ -18,7 +18,7 @@ export class PageLoading {
   readonly #region = pageElement('progress', HTMLDivElement);
   readonly #text = pageElement('progress-text', HTMLParagraphElement);
   readonly #bar = pageElement('progress-bar', HTMLProgressElement);
-  readonly #parts: Record<StepName, number> = { 'the avatar': 0, 'the network': 0, 'the first picture': 0 };
+  readonly #parts: Record<StepName, number> = { 'the avatar': 0, 'the first picture': 0, 'the network': 0 };
   readonly #marks: Record<string, number> = {};
 
   constructor() {

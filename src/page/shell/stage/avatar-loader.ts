@@ -9,7 +9,7 @@ import {
   readFileBones,
   withNamedBones,
 } from 'threepoint/files';
-import { type Avatar, bodyLabelOf, createAvatarBetweenFrames } from 'threepoint/three';
+import { type Avatar, bodyLabelOf, createAvatar, createAvatarBetweenFrames } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
 import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-ui';
 import { decoders } from '../../scene/decoders';
@@ -21,10 +21,11 @@ const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megaby
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
-export const buildBuiltIn = async (
-  body: BuiltInBody,
-  bytes: Promise<ArrayBuffer> = fetchBuiltInAvatar(body),
-): Promise<Avatar> => createAvatarBetweenFrames(await parseAvatar(await bytes, bodyLabelOf(body)));
+/** Builds a built-in avatar. `bytes`: its file, at the start of the page, when no frames are drawn that it could delay. */
+export const buildBuiltIn = async (body: BuiltInBody, bytes?: Promise<ArrayBuffer>): Promise<Avatar> => {
+  const loaded = await parseAvatar(await (bytes ?? fetchBuiltInAvatar(body)), bodyLabelOf(body));
+  return bytes ? createAvatar(loaded) : createAvatarBetweenFrames(loaded);
+};
 
 /** An avatar, and the file or the built-in body that other players see. */
 export interface UserAvatarState {

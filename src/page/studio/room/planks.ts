@@ -38,11 +38,12 @@ export function createPlanks(quality: Quality): Texture {
     for (let y = 0; y < side; y++) {
       const along = y / side;
       const bend = 2.6 * wander(along * 9) + 0.35 * wave(along * 23);
+      const pore = 331 * along * 0.37 + 40 * fibre(along * 64);
       const fromJoint = Math.abs(((along - joint + 1.5) % 1) - 0.5) * side;
       for (let x = Math.ceil(board * width); x < (board + 1) * width; x++) {
         const across = x / width - board;
         const rings = fibre((across * 7 + bend) % 64);
-        const fine = pores((across * 90 + 331 * along * 0.37 + 40 * fibre(along * 64)) % 997);
+        const fine = pores((across * 90 + pore) % 997);
         const edge = Math.min(across, 1 - across) * width;
         const groove = Math.min(1, (0.35 + edge) / 1.5, (0.35 + fromJoint) / 1.5);
         const share = Math.min(1, Math.max(0, tone + 0.34 * (rings - 0.5) + 0.22 * (fine - 0.5)));

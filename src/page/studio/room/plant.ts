@@ -13,44 +13,74 @@ const outline = [
   [1, 0.02],
 ] as const;
 
+/** Corners of triangles, one after the other, and their colours. */
+interface Foliage {
+  readonly positions: number[];
+  readonly colors: number[];
+}
+
+/** Adds triangles of one colour: corners [m] in groups of three. */
+function addTriangles(corners: readonly Vector3[], { r, g, b }: Color, { positions, colors }: Foliage): void {
+  for (const { x, y, z } of corners) {
+    positions.push(x, y, z);
+    colors.push(r, g, b);
+  }
+}
+
+const [first, second] = [new Vector3(), new Vector3()];
+
 /** Adds a leaf that hangs from the end of a stalk; both of its faces are drawn. */
-function addLeaf(stem: Vector3, direction: Vector3, size: number, shade: Color, positions: number[], colors: number[]) {
+function addLeaf(stem: Vector3, direction: Vector3, size: number, shade: Color, foliage: Foliage): void {
   const across = new Vector3(-direction.z, 0, direction.x).normalize();
+  const lit = new Color();
   const rows = outline.map(([share, width]) => {
     const middle = stem.clone().addScaledVector(direction, share * size);
     middle.y += size * (0.28 * share - 0.62 * share * share);
-    return { middle, half: 0.32 * size * width };
+    const half = 0.32 * size * width;
+    const edge = (side: number) =>
+      middle
+        .clone()
+        .addScaledVector(across, side * half)
+        .setY(middle.y + 0.25 * half);
+    return { middle, edges: [edge(-1), edge(1)] };
   });
-  const point = ({ middle, half }: (typeof rows)[number], side: number) =>
-    middle
-      .clone()
-      .addScaledVector(across, side * half)
-      .add(new Vector3(0, 0.25 * half * Math.abs(side), 0));
   const add = (a: Vector3, b: Vector3, c: Vector3) => {
-    const normal = new Vector3().crossVectors(b.clone().sub(a), c.clone().sub(a)).normalize();
-    const lit = 0.62 + 0.38 * Math.abs(normal.dot(sun)) + 0.18 * normal.y;
-    for (const corner of [a, b, c, a, c, b]) {
-      positions.push(...corner.toArray());
-      colors.push(...shade.clone().multiplyScalar(lit).toArray());
-    }
+    const normal = first.subVectors(b, a).cross(second.subVectors(c, a)).normalize();
+    lit.copy(shade).multiplyScalar(0.62 + 0.38 * Math.abs(normal.dot(sun)) + 0.18 * normal.y);
+    addTriangles([a, b, c, a, c, b], lit, foliage);
   };
-  for (let i = 0; i + 1 < rows.length; i++) {
-    const [near, far] = [rows[i]!, rows[i + 1]!];
-    for (const side of [-1, 1]) {
-      add(near.middle, point(near, side), point(far, side));
-      add(near.middle, point(far, side), far.middle);
+  for (const [i, far] of rows.slice(1).entries()) {
+    const near = rows[i]!;
+    for (const [side, edge] of far.edges.entries()) {
+      add(near.middle, near.edges[side]!, edge);
+      add(near.middle, edge, far.middle);
     }
+  }
+}
+
+const stalkColor = new Color('#5f7a41');
+
+/** Adds a stalk of four sides, thinner towards its leaf. */
+function addStalk(from: Vector3, to: Vector3, foliage: Foliage): void {
+  const along = first.subVectors(to, from).normalize();
+  const across = new Vector3(along.y, -along.x, 0).normalize();
+  const out = [across, along.clone().cross(across)];
+  const ring = (at: Vector3, radius: number) =>
+    [radius, -radius].flatMap((reach) => out.map((way) => at.clone().addScaledVector(way, reach)));
+  const [low, high] = [ring(from, 0.007), ring(to, 0.004)];
+  for (const [i, a] of low.entries()) {
+    const next = (i + 1) % 4;
+    const [b, c, d] = [low[next]!, high[next]!, high[i]!];
+    addTriangles([a, b, c, a, c, d], stalkColor, foliage);
   }
 }
 
 /** Builds a plant with broad leaves in a clay pot, in its own light; floor frame. */
 export function plantGeometry({ x, z, height, seed }: Plant): BufferGeometry {
   const random = createRandomRange(seed);
-  const positions: number[] = [];
-  const colors: number[] = [];
+  const leafy: Foliage = { positions: [], colors: [] };
   const deep = new Color('#2f5230');
   const fresh = new Color('#86ab57');
-  const stalks: BufferGeometry[] = [];
   const leaves = Math.round(16 + 10 * height);
   for (let leaf = 0; leaf < leaves; leaf++) {
     const rise = (leaf + 0.5) / leaves;
@@ -59,24 +89,16 @@ export function plantGeometry({ x, z, height, seed }: Plant): BufferGeometry {
     const end = new Vector3(x + Math.cos(turn) * out, 0.4 + (height - 0.5) * rise, z + Math.sin(turn) * out);
     const direction = new Vector3(Math.cos(turn), random(0, 0.35) + 0.5 * rise, Math.sin(turn)).normalize();
     const shade = deep.clone().lerp(fresh, 0.15 + 0.7 * rise * random(0.7, 1));
-    addLeaf(end, direction, height * random(0.19, 0.27), shade, positions, colors);
-    stalks.push(stalk(new Vector3(x, 0.32 + 0.6 * (end.y - 0.4), z), end));
+    addLeaf(end, direction, height * random(0.19, 0.27), shade, leafy);
+    addStalk(new Vector3(x, 0.32 + 0.6 * (end.y - 0.4), z), end, leafy);
   }
   const foliage = new BufferGeometry();
-  foliage.setAttribute('position', new Float32BufferAttribute(positions, 3));
-  foliage.setAttribute('color', new Float32BufferAttribute(colors, 3));
+  foliage.setAttribute('position', new Float32BufferAttribute(leafy.positions, 3));
+  foliage.setAttribute('color', new Float32BufferAttribute(leafy.colors, 3));
   const trunk = new CylinderGeometry(0.012, 0.02, 0.6 * height, 6, 1, true).translate(x, 0.3 + 0.3 * height, z);
-  const parts = [...pot(x, z), painted(trunk, '#5b4a33'), ...stalks];
+  const parts = [...pot(x, z), painted(trunk, '#5b4a33')];
   for (const part of parts) part.deleteAttribute('normal');
   return merged([foliage, ...parts]);
-}
-
-function stalk(from: Vector3, to: Vector3): BufferGeometry {
-  const geometry = new CylinderGeometry(0.004, 0.007, from.distanceTo(to), 4, 1, true);
-  const up = to.clone().sub(from).normalize();
-  geometry.rotateX(Math.PI / 2).lookAt(up);
-  const middle = from.clone().add(to).multiplyScalar(0.5);
-  return painted(geometry.translate(...middle.toArray()), '#5f7a41');
 }
 
 /** Builds a clay pot with soil; its side that faces the sun is lighter, and its foot darker. */

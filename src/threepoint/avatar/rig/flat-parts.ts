@@ -74,7 +74,8 @@ export class FlatPartsMaterial extends MeshStandardMaterial {
 /** Points each vertex of a part to its texel, and gives all vertices a colour, which is white in most files. */
 function prepare({ geometry }: FlatMesh, part: number, parts: number): BufferGeometry {
   const { count } = geometry.getAttribute('position');
-  const texels = Float32Array.from({ length: 2 * count }, (_, i) => (i % 2 === 0 ? (part + 0.5) / parts : 0.5));
+  const texels = new Float32Array(2 * count).fill(0.5);
+  for (let vertex = 0; vertex < count; vertex++) texels[2 * vertex] = (part + 0.5) / parts;
   const colors = new BufferAttribute(new Uint8Array(4 * count).fill(255), 4, true);
   const own = geometry.getAttribute('color');
   for (let vertex = 0; own && vertex < count; vertex++) {

@@ -1,12 +1,13 @@
 import { BufferAttribute, type Object3D, type SkinnedMesh, Vector3 } from 'three';
+import { recordOf } from '../../core/records';
 import type { Steps } from '../between-frames';
 
 /** The parts of a skin, in the order of their triangles: a prefix of the parts can be drawn alone. */
 export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;
 export type SkinPart = (typeof skinParts)[number];
 
-/** The number of indices that one step sorts. */
-const cornersAStep = 3 * 1024;
+/** The number of triangles that one step sorts. */
+const trianglesAStep = 1024;
 
 /**
  * Sorts a skinned mesh's triangles by part and returns the index count up to each part. The skin around the hips is
@@ -20,58 +21,60 @@ export function* sortByPart(
   const { geometry, skeleton } = mesh;
   const joints = geometry.getAttribute('skinIndex');
   const weights = geometry.getAttribute('skinWeight');
-  const source = geometry.index ?? sequence(geometry.getAttribute('position').count);
+  const { count } = geometry.getAttribute('position');
+  const corners = geometry.index?.array ?? Uint32Array.from({ length: count }, (_, index) => index);
   const hips = skinParts.length;
   const parts = skeleton.bones.map((bone) => {
     const part = partOfBone(bone);
     return part === 'hips' ? hips : skinParts.indexOf(part);
   });
   const place = new Vector3();
-  const height = (vertex: number): number => mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld).y;
+  const heights = new Float64Array(count).fill(Number.NaN);
+  const height = (vertex: number): number => {
+    if (Number.isNaN(heights[vertex]))
+      heights[vertex] = mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld).y;
+    return heights[vertex]!;
+  };
+  const sums = new Float64Array(hips + 1);
   const vertexPart = (vertex: number): number => {
-    const sums = [0, 0, 0, 0, 0];
+    sums.fill(0);
     for (let slot = 0; slot < 4; slot++) {
       const part = parts[joints.getComponent(vertex, slot)] ?? 2;
-      sums[part] = (sums[part] ?? 0) + weights.getComponent(vertex, slot);
+      sums[part] = sums[part]! + weights.getComponent(vertex, slot);
     }
-    return sums.indexOf(Math.max(...sums));
+    let best = 0;
+    for (let part = 1; part < sums.length; part++) if (sums[part]! > sums[best]!) best = part;
+    return best;
   };
   const trunk = skinParts.indexOf('trunk');
   const legs = skinParts.indexOf('legs');
-  const known = new Map<number, number>();
+  const partOfVertex = new Int8Array(count).fill(-1);
   const partOf = (vertex: number): number => {
-    let part = known.get(vertex);
-    if (part === undefined) {
-      part = vertexPart(vertex);
-      known.set(vertex, part);
-    }
-    return part;
+    if (partOfVertex[vertex] === -1) partOfVertex[vertex] = vertexPart(vertex);
+    return partOfVertex[vertex]!;
   };
-  const sorted: number[][] = skinParts.map(() => []);
-  for (let i = 0; i < source.count; i += 3) {
-    if (i % cornersAStep === 0) yield;
-    const triangle = [source.getX(i), source.getX(i + 1), source.getX(i + 2)];
-    const [a = 2, b = 2, c = 2] = triangle.map(partOf);
+  const partOfTriangle = new Uint8Array(corners.length / 3);
+  for (let triangle = 0; triangle < partOfTriangle.length; triangle++) {
+    if (triangle % trianglesAStep === 0) yield;
+    const [first, second, third] = [corners[3 * triangle]!, corners[3 * triangle + 1]!, corners[3 * triangle + 2]!];
+    const [a, b, c] = [partOf(first), partOf(second), partOf(third)];
     // The part of two of the three vertices; for three different parts the middle one, so that borders are on the
     // trunk's side.
     let part = a === b || a === c ? a : b === c ? b : 2;
     if (part === hips || part === legs) {
-      part = triangle.reduce((sum, vertex) => sum + height(vertex), 0) / 3 < hipLine ? legs : trunk;
+      part = (height(first) + height(second) + height(third)) / 3 < hipLine ? legs : trunk;
     }
-    sorted[part]?.push(...triangle);
+    partOfTriangle[triangle] = part;
   }
-  const indices = sorted.flat();
-  const wide = geometry.getAttribute('position').count > 65535;
-  geometry.setIndex(new BufferAttribute(wide ? new Uint32Array(indices) : new Uint16Array(indices), 1));
+  const sorted = count > 65535 ? new Uint32Array(corners.length) : new Uint16Array(corners.length);
   let end = 0;
-  return Object.fromEntries(
-    skinParts.map((part, index) => {
-      end += sorted[index]?.length ?? 0;
-      return [part, end];
-    }),
-  ) as Record<SkinPart, number>;
-}
-
-function sequence(count: number): { readonly count: number; getX(index: number): number } {
-  return { count, getX: (index) => index };
+  const ends = recordOf(skinParts, (_, part) => {
+    for (let triangle = 0; triangle < partOfTriangle.length; triangle++) {
+      if (partOfTriangle[triangle] !== part) continue;
+      for (let corner = 3 * triangle; corner < 3 * triangle + 3; corner++) sorted[end++] = corners[corner]!;
+    }
+    return end;
+  });
+  geometry.setIndex(new BufferAttribute(sorted, 1));
+  return ends;
 }

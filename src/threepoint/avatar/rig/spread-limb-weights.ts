@@ -245,6 +245,7 @@ interface Weights {
 /** The number of vertices that one step processes. */
 const verticesAStep = 512;
 
+/** Returns the new weights of a mesh; null: no vertex is of a limb. */
 function* spreadMesh(mesh: SkinnedMesh, limbs: readonly LimbIndices[]): Steps<Weights | null> {
   const { skinIndex, skinWeight } = mesh.geometry.attributes;
   if (!skinIndex || !skinWeight) return null;
@@ -253,22 +254,25 @@ function* spreadMesh(mesh: SkinnedMesh, limbs: readonly LimbIndices[]): Steps<We
   const touched = new Set(limbs.flatMap(({ upper, lower }) => [...upper, ...lower]));
   const ofVertex: VertexWeights = new Map();
   const place = new Vector3();
+  let isChanged = false;
   for (let vertex = 0; vertex < skinIndex.count; vertex++) {
     if (vertex % verticesAStep === 0) yield;
-    ofVertex.clear();
+    const at = vertex * influences;
     let isOfLimb = false;
     for (let slot = 0; slot < influences; slot++) {
-      const bone = skinIndex.getComponent(vertex, slot);
-      const weight = skinWeight.getComponent(vertex, slot);
-      addWeight(ofVertex, bone, weight);
-      isOfLimb ||= weight > 0 && touched.has(bone);
+      indices[at + slot] = skinIndex.getComponent(vertex, slot);
+      weights[at + slot] = skinWeight.getComponent(vertex, slot);
+      isOfLimb ||= weights[at + slot]! > 0 && touched.has(indices[at + slot]!);
     }
-    if (isOfLimb) {
-      mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld);
-      spread(ofVertex, limbs, place);
-    }
-    writeStrongest(ofVertex, vertex * influences, indices, weights);
+    if (!isOfLimb) continue;
+    isChanged = true;
+    ofVertex.clear();
+    for (let slot = at; slot < at + influences; slot++) addWeight(ofVertex, indices[slot]!, weights[slot]!);
+    mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld);
+    spread(ofVertex, limbs, place);
+    writeStrongest(ofVertex, at, indices, weights);
   }
+  if (!isChanged) return null;
   return { indices: new BufferAttribute(indices, influences), weights: new BufferAttribute(weights, influences) };
 }
 
@@ -280,10 +284,11 @@ function writeStrongest(ofVertex: VertexWeights, at: number, indices: Uint16Arra
     .slice(0, influences);
   let sum = 0;
   for (const [, weight] of rows) sum += weight;
-  rows.forEach(([bone, weight], slot) => {
+  for (let slot = 0; slot < influences; slot++) {
+    const [bone, weight] = rows[slot] ?? [0, 0];
     indices[at + slot] = bone;
     weights[at + slot] = sum > 0 ? weight / sum : 0;
-  });
+  }
 }
 
 /**
