@@ -12,7 +12,7 @@ export default defineConfig({
     emptyOutDir: true,
     target: 'es2022',
     rolldownOptions: {
-      input: ['index', 'allocations', 'counts', 'networks'].map((name) => path(`./page/${name}.html`)),
+      input: ['index', 'allocations', 'board', 'counts', 'networks'].map((name) => path(`./page/${name}.html`)),
     },
   },
 });

@@ -9,6 +9,7 @@ import { transformPoint, type Vec3 } from 'threepoint/math';
 import { createIk, createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
 import { copyJoints, type JointPositions } from '../../src/threepoint/core/estimation/joint-positions';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import type { Pipeline } from '../../src/threepoint/core/estimation/pipeline';
 import type { MeasuredFrame } from './measures';
 import type { StagedFrame } from './situations';
 
@@ -54,6 +55,11 @@ export function createDriver(
     name === 'ik'
       ? createIk(calibration, options)
       : createWithNetwork(published ? 'paper' : name, calibration, regressor, options);
+  return pipelineDriver(name, estimator, calibration);
+}
+
+/** Drives a pipeline that this calibration made; `name` stands in its errors. */
+export function pipelineDriver(name: string, estimator: Pipeline, calibration: Calibration): Driver<TimedFrame> {
   const skeleton = skeletonFromCalibration(calibration);
   return {
     async draw(frame) {
@@ -76,23 +82,28 @@ export function createDriver(
 }
 
 /** Drives the shipping path over one clip, frame by frame as the page would; joints and wrists on the truth's floor. */
-export async function drive(
+export const drive = (
   name: DrivenMethod,
   calibration: Calibration,
   regressor: PoseRegressor | null,
   frames: readonly StagedFrame[],
-): Promise<(MeasuredFrame & TimedFrame)[]> {
-  const driver = createDriver(name, calibration, regressor);
-  const result: (MeasuredFrame & TimedFrame)[] = [];
+): Promise<(MeasuredFrame & TimedFrame)[]> => driveFrames(createDriver(name, calibration, regressor), frames);
+
+/** Drives one clip's frames, in order; joints and wrists on the truth's floor. */
+export async function driveFrames<Frame extends DrawnFrame>(
+  driver: Driver<Frame>,
+  frames: readonly StagedFrame[],
+): Promise<(MeasuredFrame & Frame)[]> {
+  const result: (MeasuredFrame & Frame)[] = [];
   for (const { frame, truth, reset, truthFromFloor } of frames) {
     if (reset) driver.reset();
-    const { joints, raw, cpuMilliseconds } = await driver.draw(frame);
+    const drawn = await driver.draw(frame);
     const onTruthsFloor = (point: Vec3) => (truthFromFloor ? transformPoint(truthFromFloor, point) : point);
     const { leftHand, rightHand } = frame;
     result.push({
-      joints: Object.fromEntries(Object.entries(joints).map(([joint, point]) => [joint, onTruthsFloor(point)])),
-      raw: truthFromFloor ? null : raw,
-      cpuMilliseconds,
+      ...drawn,
+      joints: Object.fromEntries(Object.entries(drawn.joints).map(([joint, point]) => [joint, onTruthsFloor(point)])),
+      raw: truthFromFloor ? null : drawn.raw,
       truth,
       wrists: {
         left: leftHand && onTruthsFloor(leftHand.position),

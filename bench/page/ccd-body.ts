@@ -7,10 +7,14 @@ import {
   Skeleton,
   SkinnedMesh,
   Uint16BufferAttribute,
+  Vector3,
 } from 'three';
 import { CCDIKSolver } from 'three/addons/animation/CCDIKSolver.js';
 import type { Skeleton as Body, TrackingFrame } from 'threepoint/core';
+import { add, rotate, subtract, type Vec3, vec3 } from 'threepoint/math';
+import { headJointOf } from '../../src/threepoint/core/body/head-joint';
 import { parentOf } from '../../src/threepoint/core/body/joints';
+import { headingOf } from '../../src/threepoint/core/tracking/heading';
 
 const chains = [
   { effector: 'head', links: ['neck', 'upperChest', 'chest', 'spine'], target: 'headTarget' },
@@ -19,8 +23,23 @@ const chains = [
 ] as const;
 const iterations = 10;
 
-/** three's own solver on the same chains: head on the spine, two arms. */
-export function createCcdBody(body: Body): { solve(frame: TrackingFrame): void } {
+/** A body of three's own solver; `joints`: places of all joints [m], floor frame. */
+interface CcdBody {
+  solve(frame: TrackingFrame): void;
+  joints(): Readonly<Record<string, Vec3>>;
+}
+
+/** The path from the hips to the head joint in T-pose [m]. */
+function hipsToHead({ restOffsets: { spine, chest, upperChest, neck, head } }: Body): Vec3 {
+  return [spine, chest, upperChest, neck, head].reduce((sum, offset) => add(sum, offset), vec3(0, 0, 0));
+}
+
+/**
+ * three's own solver on the same chains: head on the spine, two arms. The hips stand below the head and face where it
+ * does. A hand that is not seen stays where it was seen last.
+ */
+export function createCcdBody(body: Body): CcdBody {
+  const toHead = hipsToHead(body);
   const bones = new Map<string, Bone>();
   for (const [name, parent] of Object.entries(parentOf)) {
     const bone = new Bone();
@@ -61,18 +80,21 @@ export function createCcdBody(body: Body): { solve(frame: TrackingFrame): void }
   );
   return {
     solve({ head, leftHand, rightHand }) {
+      const headJoint = headJointOf(head, body.eyesInHead);
+      const heading = headingOf(head.orientation);
       const hips = bones.get('hips');
-      hips?.position.set(head.position.x, body.restOffsets.hips.y, head.position.z);
-      for (const [name, pose] of [
-        ['headTarget', head],
-        ['leftTarget', leftHand],
-        ['rightTarget', rightHand],
-      ] as const) {
-        if (pose) bones.get(name)?.position.set(pose.position.x, pose.position.y, pose.position.z);
-      }
+      hips?.position.copy(subtract(headJoint, rotate(heading, toHead)));
+      hips?.quaternion.copy(heading);
+      bones.get('headTarget')?.position.copy(headJoint);
+      if (leftHand) bones.get('leftTarget')?.position.copy(leftHand.position);
+      if (rightHand) bones.get('rightTarget')?.position.copy(rightHand.position);
       mesh.updateMatrixWorld(true);
       solver.update();
       mesh.updateMatrixWorld(true);
     },
+    joints: () =>
+      Object.fromEntries(
+        Object.keys(parentOf).map((name) => [name, new Vector3().setFromMatrixPosition(bones.get(name)!.matrixWorld)]),
+      ),
   };
 }

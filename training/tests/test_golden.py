@@ -28,6 +28,10 @@ def test_golden_features_are_what_the_features_are_now():
     assert_as_committed("features.json", golden.feature_vectors(), atol=1e-7)
 
 
+def test_golden_windows_are_what_the_boards_inputs_are_now():
+    assert_as_committed("windows.json", golden.window_vectors(), atol=1e-6)
+
+
 def test_golden_mocap_makes_the_recordings_that_it_made():
     now, before = golden.mocap_vectors(), committed("mocap.json")
     assert [case["files"] for case in before] == [case["files"] for case in now]

@@ -18,6 +18,10 @@ _TASKS: dict[str, tuple[Task, str]] = {
         "online calibration",
         "the estimation of calibration errors from minutes of motion, on people held out in four groups, for docs/accuracy.md",
     ),
+    "--board": (
+        "board",
+        "the networks of docs/board.md, on all trainable people but those held out there; a run that was ended goes on",
+    ),
     "--lockbox": (
         "lockbox",
         "the learned network in --out on the lockbox people, logged in training/lockbox-log.json; for a release only",
@@ -80,7 +84,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--groups", type=int, help="with --select: so many groups in turn instead of one subject at a time"
     )
-    parser.add_argument("--steps", type=int, help=f"of our network's training (default: {TrainConfig.learned.steps})")
+    parser.add_argument(
+        "--steps",
+        type=int,
+        help=f"of our network's training (default: {TrainConfig.learned.steps}); with --board: at most so many of the "
+        f"field's networks (default: {TrainConfig.board.steps})",
+    )
     parser.add_argument(
         "--quick", action="store_true", help="a twentieth of the training, but for --steps: does it run?"
     )
@@ -123,6 +132,9 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
     if unknown := set(config.networks) - set(TrainConfig.networks):
         parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
     config = quick(config) if given.quick else config
+    if config.task == "board":
+        budget = config.board.steps if given.steps is None else given.steps
+        return replace(config, board=replace(config.board, seed=config.seed, steps=budget))
     steps = config.learned.steps if given.steps is None else given.steps
     return replace(
         config,

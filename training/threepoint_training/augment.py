@@ -232,17 +232,6 @@ def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, ran
     return body.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
 
 
-@dataclass(frozen=True)
-class _Reported:
-    """One frame of every window as estimators get it, floor frame: points [N, 3, 3], rotations [N, 3, 4]; and its
-    features [N, 46].
-    """
-
-    positions: Array
-    rotations: Array
-    vector: Array
-
-
 def _trackers_at(ago: NDArray[np.int64], bodies: _Bodies, tracking: _Tracking) -> tuple[Array, Array]:
     """Headset and hands [N, 3, 3] and their rotations [N, 3, 4] as they were that many frames before the newest, seen
     or not, without noise.
@@ -262,48 +251,96 @@ def _with_noise(
     ), quaternion.multiply(rotations, jitter)
 
 
-def _window_at(
-    age: int,
-    bodies: _Bodies,
-    tracking: _Tracking,
-    calibrated: Body,
-    noisy: Callable[[Array, Array], tuple[Array, Array]],
-) -> _Reported:
-    """The frames `age` frames before the newest; noisy(positions, rotations): what trackers that are there report.
-
-    Lost hands are where they were seen last, carried along with the headset, as `complete_hands` wants them.
+@dataclass(frozen=True)
+class _Completed:
+    """Headset and hands of one frame of every window, floor frame, lost hands completed: points [N, 3, 3], rotations
+    [N, 3, 4]; and which hands are seen [N, 2].
     """
-    # Trackers may report what was true a frame before.
-    ago = age + tracking.late
-    positions, rotations = noisy(*_trackers_at(ago, bodies, tracking))
-    unseen = tracking.unseen_at(age)
-    for hand in (0, 1):
-        lost, column = np.flatnonzero(unseen[:, hand]), 1 + hand
-        place, turn = noisy(*_trackers_at(ago[lost] + unseen[lost, hand], bodies.of(lost), tracking.of(lost)))
-        positions[lost, column], rotations[lost, column] = carry_with_head(
-            place[:, column], turn[:, column], (place[:, 0], turn[:, 0]), (positions[lost, 0], rotations[lost, 0])
+
+    positions: Array
+    rotations: Array
+    seen: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class _Draw:
+    """Bodies [N] with their tracking, their calibrations, and what trackers report that are at some place."""
+
+    bodies: _Bodies
+    tracking: _Tracking
+    calibrated: Body
+    noisy: Callable[[Array, Array], tuple[Array, Array]]
+
+    def truth(self) -> Array:
+        """The six estimated joints [N, 6, 3] of the newest frames, as they are seen."""
+        truth = self.bodies.truth()
+        return self.tracking.images(truth, mirror.joints(truth))
+
+    def at(self, age: int) -> _Completed:
+        """The frames `age` frames before the newest. Lost hands are where they were seen last, carried along with the
+        headset, as `complete_hands` wants them.
+        """
+        bodies, tracking, noisy = self.bodies, self.tracking, self.noisy
+        # Trackers may report what was true a frame before.
+        ago = age + tracking.late
+        positions, rotations = noisy(*_trackers_at(ago, bodies, tracking))
+        unseen = tracking.unseen_at(age)
+        for hand in (0, 1):
+            lost, column = np.flatnonzero(unseen[:, hand]), 1 + hand
+            place, turn = noisy(*_trackers_at(ago[lost] + unseen[lost, hand], bodies.of(lost), tracking.of(lost)))
+            positions[lost, column], rotations[lost, column] = carry_with_head(
+                place[:, column], turn[:, column], (place[:, 0], turn[:, 0]), (positions[lost, 0], rotations[lost, 0])
+            )
+        positions, rotations = complete_hands(
+            positions,
+            rotations,
+            unseen / RATE_HZ,
+            self.calibrated.eye_height[:, 0],
+            self.calibrated.arm[:, 0],
         )
-    positions, rotations = complete_hands(
-        positions, rotations, unseen / RATE_HZ, calibrated.eye_height[:, 0], calibrated.arm[:, 0]
-    )
-    vector, _ = frame_features(positions, rotations, calibrated, unseen == 0)
-    return _Reported(positions, rotations, vector)
+        return _Completed(positions, rotations, unseen == 0)
 
 
-def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
-    """`count` windows of recombined bodies; config.window_frames must have the newest frame, 0."""
+def _draw(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> _Draw:
     bodies = _draw_bodies(parts, count, config, random)
     tracking = _draw_tracking(count, config, random)
     seated = np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0)
     bodies = replace(bodies, drop=seated * bodies.sizes[:, 0])
     calibrated = _calibrated(bodies, tracking, config, random)
+    return _Draw(bodies, tracking, calibrated, lambda *given: _with_noise(*given, config.trackers, random))
 
-    def noisy(positions: Array, rotations: Array) -> tuple[Array, Array]:
-        return _with_noise(positions, rotations, config.trackers, random)
 
-    window = {age: _window_at(age, bodies, tracking, calibrated, noisy) for age in config.window_frames}
-    newest, truth = window[0], bodies.truth()
-    truth = tracking.images(truth, mirror.joints(truth))
-    targets = residual(truth, newest.positions, newest.rotations, calibrated, newest.vector)
-    inputs = np.concatenate([*(each.vector for each in window.values()), chest_features(newest.vector)], axis=1)
+def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
+    """`count` windows of recombined bodies; config.window_frames must have the newest frame, 0."""
+    drawn = _draw(parts, count, config, random)
+    body, window = drawn.calibrated, {age: drawn.at(age) for age in config.window_frames}
+    vectors = {
+        age: frame_features(frame.positions, frame.rotations, body, frame.seen)[0] for age, frame in window.items()
+    }
+    newest = window[0]
+    targets = residual(drawn.truth(), newest.positions, newest.rotations, body, vectors[0])
+    inputs = np.concatenate([*vectors.values(), chest_features(vectors[0])], axis=1)
     return Batch(inputs.astype(np.float32), targets.astype(np.float32))
+
+
+@dataclass(frozen=True)
+class TrackedWindows:
+    """Windows as trackers report them, oldest frame first, floor frame [m]: positions [N, T, 3, 3] and rotations [N, T,
+    3, 4] of headset and hands, lost hands completed; the calibrated bodies, and the six joints [N, 6, 3] of the newest
+    frames.
+    """
+
+    positions: Array
+    rotations: Array
+    body: Body
+    truth: Array
+
+
+def draw_windows(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> TrackedWindows:
+    """Draws the same bodies as `draw_batch`, as trackers report them in every one of config.window_frames."""
+    drawn = _draw(parts, count, config, random)
+    frames = [drawn.at(age) for age in sorted(config.window_frames, reverse=True)]
+    positions, rotations = (
+        np.stack([getattr(frame, name) for frame in frames], axis=1) for name in ("positions", "rotations")
+    )
+    return TrackedWindows(positions, rotations, drawn.calibrated, drawn.truth())

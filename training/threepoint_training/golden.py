@@ -23,6 +23,8 @@ from .residual import network_input
 from .shared_constants import REPOSITORY
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration, rest_offsets
+from .window_features import FRAMES as WINDOW_FRAMES
+from .window_features import window_features
 
 GOLDEN = REPOSITORY / "tests/golden"
 
@@ -270,15 +272,30 @@ class GoldenConfig:
     models: Path = REPOSITORY / "public/models"
 
 
+def window_vectors() -> list[dict[str, Any]]:
+    """Windows of the board's networks: what goes in and what must come out."""
+    cases = []
+    for number, person in enumerate(BODIES[:1]):
+        random = np.random.default_rng([17, number])
+        joints, turns = generate_clip(random, WINDOW_FRAMES + 1, Person("golden", person.eye_height, person.arm_span))
+        trackers = TrackerConfig()
+        positions, rotations = simulate(joints, turns, draw_wearer(trackers, random), trackers, random)
+        features = window_features(positions[None], rotations[None], body_from_calibration(*np.array([[person.eye_height], [person.arm_span]])))[0]
+        case = {"positions": positions, "rotations": rotations, "features": features}
+        cases.append({"calibration": person.calibration(), **case})
+    return cases
+
+
 def main(config: GoldenConfig) -> None:
-    """Writes features.json, fitted-joints.json, headset-rise.json and mocap.json in tests/golden, and
-    models.json where there are models.
+    """Writes features.json, fitted-joints.json, headset-rise.json, mocap.json and windows.json in tests/golden,
+    and models.json where there are models.
     """
     GOLDEN.mkdir(parents=True, exist_ok=True)
     (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
     (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")
     (GOLDEN / "headset-rise.json").write_text(json.dumps(plain(headset_rise_vectors())) + "\n")
     (GOLDEN / "mocap.json").write_text(json.dumps(plain(mocap_vectors())) + "\n")
+    (GOLDEN / "windows.json").write_text(json.dumps(plain(window_vectors())) + "\n")
     if list(config.models.glob("*.json")):
         (GOLDEN / "models.json").write_text(json.dumps(plain(model_vectors(config.models))) + "\n")
 

@@ -4,6 +4,7 @@ table.
 A run is seeded: the same data and options write the same weights on the same machine.
 """
 
+import functools
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,6 +22,7 @@ from . import (
     online_calibration,
     prepare,
     selection,
+    train_board,
     train_learned,
     train_paper,
 )
@@ -29,7 +31,7 @@ from .generated_motion import generate_corpus
 from .lockbox_log import LockboxAccess, git_commit
 from .prepared_corpus import PreparedCorpus
 from .shared_constants import REPOSITORY
-from .splits import LOCKBOX, evaluation_only, trainable
+from .splits import LOCKBOX, evaluation_only, trainable, training_people
 from .training_config import Task, TrainConfig
 from .training_report import LABELS, TrainingReport
 
@@ -127,6 +129,28 @@ def _online_calibration(run: TrainingRun) -> Rows:
     return {}
 
 
+def _make_board(run: TrainingRun) -> Rows:
+    """Trains the networks of the board that are not finished: ours and the paper's without the people held out there,
+    then those of the field.
+    """
+    config, print_line = run.config, functools.partial(run.report.console.print, markup=False)
+    folder = train_board.folder_of(run.corpus, config.board)
+    training = training_people("board", tuple(run.corpus.people))
+    for name in config.networks:
+        if (folder / f"{name}.json").exists():
+            print_line(f"{name}: finished before")
+            continue
+        if name == "paper":
+            network = fit_networks.paper(run, fit_networks.paper_frames(run, training, "board"), "board")
+        else:
+            network = fit_networks.learned(run, training, "board")
+        fit_networks.write(
+            run, name, network, fit_networks.provenance(run, name, training, {}, None), Destination(folder)
+        )
+    train_board.main(run.corpus, config.board, print_line)
+    return {}
+
+
 def _open_lockbox(run: TrainingRun) -> Rows:
     """Evaluates the learned network in `out` on the lockbox people and logs it."""
     row = lockbox.main(run.corpus, lockbox.LockboxConfig(run.config.out, run.config.lockbox_log))
@@ -138,6 +162,7 @@ _TASKS: dict[Task, Callable[[TrainingRun], Rows]] = {
     "train": _train,
     "selection": _select,
     "online calibration": _online_calibration,
+    "board": _make_board,
     "lockbox": _open_lockbox,
 }
 

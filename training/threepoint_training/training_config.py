@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
-from . import fit_ik, lockbox_log, train_learned, train_paper
+from . import fit_ik, lockbox_log, train_board, train_learned, train_paper
 from .shared_constants import REPOSITORY
 
 # What a run does: trains the networks, or instead makes the tables of one study, or evaluates the lockbox.
-Task = Literal["train", "selection", "online calibration", "lockbox"]
+Task = Literal["train", "selection", "online calibration", "board", "lockbox"]
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,7 @@ class TrainConfig:
     learned: train_learned.TrainLearnedConfig = train_learned.TrainLearnedConfig()
     learned_frame_random: train_learned.TrainFrameRandomConfig = train_learned.TrainFrameRandomConfig()
     ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
+    board: train_board.BoardConfig = train_board.BoardConfig()
 
 
 def quick(config: TrainConfig) -> TrainConfig:
@@ -59,4 +60,5 @@ def quick(config: TrainConfig) -> TrainConfig:
         learned=replace(config.learned, steps=80, batch=512),
         learned_frame_random=replace(config.learned_frame_random, width=64, steps=200, batch=512),
         ik=replace(config.ik, iterations=2, frames_per_person=200),
+        board=replace(config.board, steps=40, batch=8, watch_every=20, watched_windows=64),
     )
