@@ -4,12 +4,15 @@ import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
 import type { AvatarExchange, RoomClient } from 'threepoint-rooms';
 import type { HostedGame } from 'threepoint-rooms/room';
 import { RoomBodies } from 'threepoint-rooms/three';
-import type { ActivityContext } from '../../activity/activity-context';
+import { type ActivityContext, showsIdleMotion } from '../../activity/activity-context';
 import { decoders } from '../../scene/decoders';
 import type { Voices } from '../voices/voices';
 
 export interface OtherBodiesOptions {
-  readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'gazeTargets' | 'fetchBuiltInAvatar'>;
+  readonly context: Pick<
+    ActivityContext,
+    'settings' | 'avatar' | 'notices' | 'gazeTargets' | 'fetchBuiltInAvatar' | 'calm' | 'study' | 'inputSource'
+  >;
   /** null: avatar files are not exchanged in this room. */
   readonly exchange: AvatarExchange | null;
   /** The file of the body that other players have. */
@@ -55,6 +58,7 @@ export function createOtherBodies({ context, exchange, mannequin, play, voices }
     loadBuiltIn: (body) => builtIn.load(body),
     loadFile: (bytes) => loadUntrustedAvatar(bytes, 'the avatar', { check: checkInWorker, decoders }),
     plain: () => settings.plainOthers,
+    idles: () => showsIdleMotion(context, context.inputSource),
     mouthOf: (seat) => voices.seats.mouthOf(seat),
     shadows: true,
     gazeTargets: context.gazeTargets,
