@@ -6,12 +6,21 @@ import type { HostedGame } from 'threepoint-rooms/room';
 import { RoomBodies } from 'threepoint-rooms/three';
 import { type ActivityContext, showsIdleMotion } from '../../activity/activity-context';
 import { decoders } from '../../scene/decoders';
+import type { Quality } from '../../scene/renderer';
 import type { Voices } from '../voices/voices';
 
 export interface OtherBodiesOptions {
   readonly context: Pick<
     ActivityContext,
-    'settings' | 'avatar' | 'notices' | 'gazeTargets' | 'fetchBuiltInAvatar' | 'calm' | 'study' | 'inputSource'
+    | 'quality'
+    | 'settings'
+    | 'avatar'
+    | 'notices'
+    | 'gazeTargets'
+    | 'fetchBuiltInAvatar'
+    | 'calm'
+    | 'study'
+    | 'inputSource'
   >;
   /** null: avatar files are not exchanged in this room. */
   readonly exchange: AvatarExchange | null;
@@ -25,9 +34,11 @@ export interface OtherBodiesOptions {
 export class BuiltInBodies {
   readonly #files = new Map<BuiltInBody, Promise<ArrayBuffer>>();
   readonly #fetch: (name: BuiltInBody) => Promise<ArrayBuffer>;
+  readonly #quality: Quality;
 
   /** `mannequin`: the file of the plain body; `fetch`: downloads another one. */
-  constructor(mannequin: ArrayBuffer, fetch: (name: BuiltInBody) => Promise<ArrayBuffer>) {
+  constructor(mannequin: ArrayBuffer, quality: Quality, fetch: (name: BuiltInBody) => Promise<ArrayBuffer>) {
+    this.#quality = quality;
     this.#files.set(defaultAvatar, Promise.resolve(mannequin));
     this.#fetch = fetch;
   }
@@ -40,14 +51,16 @@ export class BuiltInBodies {
       // A failed download is repeated when the body is needed again.
       file.catch(() => this.#files.delete(body));
     }
-    return createAvatarBetweenFrames(await parseAvatar(await file, `${body}.vrm`));
+    const avatar = await createAvatarBetweenFrames(await parseAvatar(await file, `${body}.vrm`));
+    avatar.setClothWeave(this.#quality === 'high');
+    return avatar;
   }
 }
 
 /** Creates the bodies of the other players as drawn here, and shares the user's avatar with the others. */
 export function createOtherBodies({ context, exchange, mannequin, play, voices }: OtherBodiesOptions): RoomBodies {
   const { settings, avatar, notices } = context;
-  const builtIn = new BuiltInBodies(mannequin, (name) => context.fetchBuiltInAvatar(name));
+  const builtIn = new BuiltInBodies(mannequin, context.quality, (name) => context.fetchBuiltInAvatar(name));
   return new RoomBodies({
     exchange,
     room: () => play.room,

@@ -13,6 +13,7 @@ import { type Avatar, bodyLabelOf, createAvatar, createAvatarBetweenFrames } fro
 import type { OwnAvatar } from 'threepoint-rooms';
 import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-ui';
 import { decoders } from '../../scene/decoders';
+import type { Quality } from '../../scene/renderer';
 import type { BoneMapStore } from './bone-map-store';
 
 const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
@@ -22,10 +23,12 @@ export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: numbe
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
 /** Builds a built-in avatar. `bytes`: its file, at the start of the page, when no frames are drawn that it could delay. */
-export const buildBuiltIn = async (body: BuiltInBody, bytes?: Promise<ArrayBuffer>): Promise<Avatar> => {
+export async function buildBuiltIn(body: BuiltInBody, quality: Quality, bytes?: Promise<ArrayBuffer>): Promise<Avatar> {
   const loaded = await parseAvatar(await (bytes ?? fetchBuiltInAvatar(body)), bodyLabelOf(body));
-  return bytes ? createAvatar(loaded) : createAvatarBetweenFrames(loaded);
-};
+  const avatar = bytes ? createAvatar(loaded) : await createAvatarBetweenFrames(loaded);
+  avatar.setClothWeave(quality === 'high');
+  return avatar;
+}
 
 /** An avatar, and the file or the built-in body that other players see. */
 export interface UserAvatarState {
@@ -47,14 +50,16 @@ async function fileFor(checked: CheckedAvatar, bones: BoneMap | undefined): Prom
 /** Loads avatars from files, addresses and the page's folder. */
 export class AvatarLoader {
   readonly #boneMaps: BoneMapStore;
+  readonly #quality: Quality;
   readonly #prepare: (object: Avatar['object']) => Promise<void>;
 
   /**
    * `boneMaps`: the bone maps that users gave for files. `prepare`: uploads an avatar to the graphics device before it
    * is shown.
    */
-  constructor(boneMaps: BoneMapStore, prepare: (object: Avatar['object']) => Promise<void>) {
+  constructor(boneMaps: BoneMapStore, quality: Quality, prepare: (object: Avatar['object']) => Promise<void>) {
     this.#boneMaps = boneMaps;
+    this.#quality = quality;
     this.#prepare = prepare;
   }
 
@@ -64,7 +69,8 @@ export class AvatarLoader {
     skinTone: SkinTone | undefined,
     bytes?: Promise<ArrayBuffer>,
   ): Promise<UserAvatarState> {
-    return { avatar: await buildBuiltIn(body, bytes), worn: builtInAvatarOf(body, skinTone), checked: null };
+    const avatar = await buildBuiltIn(body, this.#quality, bytes);
+    return { avatar, worn: builtInAvatarOf(body, skinTone), checked: null };
   }
 
   /** Reads a file and checks it in a worker. */
