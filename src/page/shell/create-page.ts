@@ -95,7 +95,7 @@ function createParts(context: PageContext, loading: PageLoading) {
 
   const prepare = (object: Object3D) => uploadToGpu(renderer, scene, object);
   const boneMaps = new BoneMapStore(store);
-  const avatar = new UserAvatar(sessionParts, new AvatarLoader(boneMaps, quality, prepare));
+  const avatar = new UserAvatar(sessionParts, new AvatarLoader(boneMaps, prepare));
   const avatarShown = avatar.openBuiltIn(builtInAvatar);
   const recorder = new Recorder(onChange);
   const pointers = new Pointers(sessionParts);

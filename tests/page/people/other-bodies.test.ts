@@ -4,7 +4,7 @@ import { BuiltInBodies } from '../../../src/page/people/match/other-bodies';
 
 test('a built-in body whose download failed is fetched again when it is needed again', async () => {
   let asked = 0;
-  const bodies = new BuiltInBodies(new ArrayBuffer(0), 'low', () => {
+  const bodies = new BuiltInBodies(new ArrayBuffer(0), () => {
     asked += 1;
     return Promise.reject(new TransientError('the network is gone'));
   });

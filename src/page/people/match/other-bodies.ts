@@ -6,7 +6,6 @@ import type { HostedGame } from 'threepoint-rooms/room';
 import { RoomBodies } from 'threepoint-rooms/three';
 import { type ActivityContext, showsIdleMotion } from '../../activity/activity-context';
 import { decoders } from '../../scene/decoders';
-import type { Quality } from '../../scene/renderer';
 import type { Voices } from '../voices/voices';
 
 export interface OtherBodiesOptions {
@@ -34,11 +33,9 @@ export interface OtherBodiesOptions {
 export class BuiltInBodies {
   readonly #files = new Map<BuiltInBody, Promise<ArrayBuffer>>();
   readonly #fetch: (name: BuiltInBody) => Promise<ArrayBuffer>;
-  readonly #quality: Quality;
 
   /** `mannequin`: the file of the plain body; `fetch`: downloads another one. */
-  constructor(mannequin: ArrayBuffer, quality: Quality, fetch: (name: BuiltInBody) => Promise<ArrayBuffer>) {
-    this.#quality = quality;
+  constructor(mannequin: ArrayBuffer, fetch: (name: BuiltInBody) => Promise<ArrayBuffer>) {
     this.#files.set(defaultAvatar, Promise.resolve(mannequin));
     this.#fetch = fetch;
   }
@@ -51,16 +48,14 @@ export class BuiltInBodies {
       // A failed download is repeated when the body is needed again.
       file.catch(() => this.#files.delete(body));
     }
-    const avatar = await createAvatarBetweenFrames(await parseAvatar(await file, `${body}.vrm`));
-    avatar.setClothWeave(this.#quality === 'high');
-    return avatar;
+    return createAvatarBetweenFrames(await parseAvatar(await file, `${body}.vrm`));
   }
 }
 
 /** Creates the bodies of the other players as drawn here, and shares the user's avatar with the others. */
 export function createOtherBodies({ context, exchange, mannequin, play, voices }: OtherBodiesOptions): RoomBodies {
   const { settings, avatar, notices } = context;
-  const builtIn = new BuiltInBodies(mannequin, context.quality, (name) => context.fetchBuiltInAvatar(name));
+  const builtIn = new BuiltInBodies(mannequin, (name) => context.fetchBuiltInAvatar(name));
   return new RoomBodies({
     exchange,
     room: () => play.room,
@@ -68,7 +63,11 @@ export function createOtherBodies({ context, exchange, mannequin, play, voices }
     wear: () => (settings.shareAvatar || avatar.isBuiltIn ? avatar.worn : null),
     notify: (level, text) => notices.show(level, text),
     onRefused: (text) => notices.show('info', text),
-    loadBuiltIn: (body) => builtIn.load(body),
+    async loadBuiltIn(body) {
+      const loaded = await builtIn.load(body);
+      loaded.setClothWeave(context.quality === 'high');
+      return loaded;
+    },
     loadFile: (bytes) => loadUntrustedAvatar(bytes, 'the avatar', { check: checkInWorker, decoders }),
     plain: () => settings.plainOthers,
     idles: () => showsIdleMotion(context, context.inputSource),

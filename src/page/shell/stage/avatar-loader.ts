@@ -13,7 +13,6 @@ import { type Avatar, bodyLabelOf, createAvatar, createAvatarBetweenFrames } fro
 import type { OwnAvatar } from 'threepoint-rooms';
 import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-ui';
 import { decoders } from '../../scene/decoders';
-import type { Quality } from '../../scene/renderer';
 import type { BoneMapStore } from './bone-map-store';
 
 const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
@@ -22,13 +21,11 @@ const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megaby
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
-/** Builds a built-in avatar. `bytes`: its file, at the start of the page, when no frames are drawn that it could delay. */
-export async function buildBuiltIn(body: BuiltInBody, quality: Quality, bytes?: Promise<ArrayBuffer>): Promise<Avatar> {
+/** Builds a built-in avatar. `bytes`: its file, at the start of the page, when no frame is drawn that could be late. */
+export const buildBuiltIn = async (body: BuiltInBody, bytes?: Promise<ArrayBuffer>): Promise<Avatar> => {
   const loaded = await parseAvatar(await (bytes ?? fetchBuiltInAvatar(body)), bodyLabelOf(body));
-  const avatar = bytes ? createAvatar(loaded) : await createAvatarBetweenFrames(loaded);
-  avatar.setClothWeave(quality === 'high');
-  return avatar;
-}
+  return bytes ? createAvatar(loaded) : createAvatarBetweenFrames(loaded);
+};
 
 /** An avatar, and the file or the built-in body that other players see. */
 export interface UserAvatarState {
@@ -50,16 +47,14 @@ async function fileFor(checked: CheckedAvatar, bones: BoneMap | undefined): Prom
 /** Loads avatars from files, addresses and the page's folder. */
 export class AvatarLoader {
   readonly #boneMaps: BoneMapStore;
-  readonly #quality: Quality;
   readonly #prepare: (object: Avatar['object']) => Promise<void>;
 
   /**
    * `boneMaps`: the bone maps that users gave for files. `prepare`: uploads an avatar to the graphics device before it
    * is shown.
    */
-  constructor(boneMaps: BoneMapStore, quality: Quality, prepare: (object: Avatar['object']) => Promise<void>) {
+  constructor(boneMaps: BoneMapStore, prepare: (object: Avatar['object']) => Promise<void>) {
     this.#boneMaps = boneMaps;
-    this.#quality = quality;
     this.#prepare = prepare;
   }
 
@@ -69,8 +64,7 @@ export class AvatarLoader {
     skinTone: SkinTone | undefined,
     bytes?: Promise<ArrayBuffer>,
   ): Promise<UserAvatarState> {
-    const avatar = await buildBuiltIn(body, this.#quality, bytes);
-    return { avatar, worn: builtInAvatarOf(body, skinTone), checked: null };
+    return { avatar: await buildBuiltIn(body, bytes), worn: builtInAvatarOf(body, skinTone), checked: null };
   }
 
   /** Reads a file and checks it in a worker. */

@@ -90,7 +90,8 @@ export class LazyMocap {
   async #loadAvatar(): Promise<Avatar> {
     const { quality, settings } = this.#parts;
     const { builtInBody, palette } = settings;
-    const avatar = await buildBuiltIn(builtInBody, quality);
+    const avatar = await buildBuiltIn(builtInBody);
+    avatar.setClothWeave(quality === 'high');
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
     await this.#prepare(avatar.object);
     return avatar;

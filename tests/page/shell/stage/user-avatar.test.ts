@@ -39,7 +39,7 @@ test('our body keeps its seat’s colours when another replaces it, and its tone
     notices: { show: (_: unknown, text: string) => expect(text).toBeNull(), withdraw: () => undefined },
     onChange: () => undefined,
   });
-  const avatar = new UserAvatar(parts, new AvatarLoader(noBones(), 'low', () => Promise.resolve()));
+  const avatar = new UserAvatar(parts, new AvatarLoader(noBones(), () => Promise.resolve()));
   const colourOf = (material: string) => colourOfMaterial(tracker.object, material);
   await avatar.openBuiltIn(bytes());
   expect([colourOf('Top'), colourOf('Skin')]).toEqual([clothes('porcelain'), skinColors.dark]);
@@ -82,7 +82,7 @@ function wardrobe(prepare: (object: Object3D) => Promise<void> = () => Promise.r
     },
     onChange: () => undefined,
   });
-  const avatar = new UserAvatar(parts, new AvatarLoader(boneMaps, 'low', prepare));
+  const avatar = new UserAvatar(parts, new AvatarLoader(boneMaps, prepare));
   return { avatar, told, withdrawn, tracker };
 }
 
