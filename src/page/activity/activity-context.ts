@@ -79,7 +79,7 @@ export interface ActivityServices {
   readonly server: Pick<ServerPresence, 'state' | 'whenKnown' | 'refresh'>;
   readonly notices: Pick<Notices, 'show' | 'withdraw'>;
   /** Whether the user asked for reduced motion. */
-  readonly calm: Pick<MediaQueryList, 'matches'>;
+  readonly calm: { readonly matches: boolean };
   /** The study that the user takes part in; `run`: null without one. */
   readonly study: { readonly run: Pick<StudyRun, 'idle' | 'paused'> | null };
   onCaption(text: string): void;
