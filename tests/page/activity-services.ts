@@ -86,6 +86,7 @@ export function activityServices(address = '?seed=5&quality=low') {
     gazeTargets: new GazeTargets(),
     server: new ServerPresence('http://127.0.0.1:9', () => undefined),
     notices: { show: (level, text) => void notices.push({ level, text }), withdraw: () => undefined },
+    calm: { matches: false },
     study,
     onCaption: (text) => void captions.push(text),
     onChange: () => undefined,

@@ -78,6 +78,8 @@ export interface ActivityServices {
   readonly gazeTargets: GazeTargets;
   readonly server: Pick<ServerPresence, 'state' | 'whenKnown' | 'refresh'>;
   readonly notices: Pick<Notices, 'show' | 'withdraw'>;
+  /** Whether the user asked for reduced motion. */
+  readonly calm: { readonly matches: boolean };
   /** The study that the user takes part in; `run`: null without one. */
   readonly study: { readonly run: Pick<StudyRun, 'idle' | 'paused'> | null };
   onCaption(text: string): void;
@@ -87,6 +89,13 @@ export interface ActivityServices {
 
 /** The input source that moves the player. */
 export type InputSource = 'recording' | 'headset' | 'mouse' | 'actor';
+
+/**
+ * Returns whether drawn bodies breathe and shift their weight: in a study and in a replay bodies are as they were
+ * measured, and with reduced motion they rest.
+ */
+export const showsIdleMotion = ({ calm, study }: Pick<ActivityServices, 'calm' | 'study'>, source: InputSource) =>
+  !calm.matches && study.run === null && source !== 'recording';
 
 /** Everything an activity gets when it is entered. */
 export interface ActivityContext extends ActivityServices {

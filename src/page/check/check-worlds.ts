@@ -78,6 +78,7 @@ async function openActivity(activity: Activity, options: CheckWorldsOptions): Pr
     fetchBuiltInAvatar: (name) => (name === defaultAvatar ? Promise.resolve(mannequin) : fetchBuiltInAvatar(name)),
     server: new ServerPresence(pageFolder(), ignore),
     notices: { show: (_, text) => onProblem(text), withdraw: ignore },
+    calm: matchMedia('(prefers-reduced-motion: reduce)'),
     study: { run: null },
     onCaption: ignore,
     onChange: ignore,

@@ -11,6 +11,7 @@ import {
 import type { Side } from 'threepoint/math';
 import { GazeChoice, handShapeFromButtons } from 'threepoint/three';
 import { defaultSavings } from 'threepoint/webxr';
+import { showsIdleMotion } from '../activity/activity-context';
 import type { FrameParts } from './frame-loop';
 import type { InputParts } from './input/input-parts';
 import type { Controls } from './panels/controls';
@@ -86,7 +87,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     if (!frame) return;
     difference.observe(frame, pose, body.calibration);
     tracker.avatar?.setMouth(activities.current?.mouth ?? 0);
-    tracker.avatar?.setIdleMotion(this.#idles);
+    tracker.avatar?.setIdleMotion(showsIdleMotion(this.#parts, activities.inputSource));
     tracker.draw(frame.time);
     activities.current?.send?.(frame, pose, this.#fingers);
     mocap.frame(frame, pose);
@@ -108,12 +109,6 @@ export class PageFrame implements FrameParts<XRFrame> {
     if (body) this.#look(body);
     gazeTargets.clear();
     stage.draw(shot);
-  }
-
-  /** A body that a person or the actor moves lives; one from a file, and all of a study, are as they were measured. */
-  get #idles(): boolean {
-    const { calm, study, activities } = this.#parts;
-    return !calm.matches && study.run === null && activities.inputSource !== 'recording';
   }
 
   /** Turns the eyes of the user's avatar to what its face points to: at the desktop also the viewer. */

@@ -64,7 +64,7 @@ const studioLighting = (quality: Quality): Lighting => ({
   fog: { color: hazeColor, near: 16, far: 95 },
   environment: createLightRoom,
   environmentIntensity: 0.5,
-  contactShadow: quality === 'high' ? 0.5 : 0.7,
+  contactShadow: quality === 'high' ? 0.3 : 0.7,
 });
 
 /**

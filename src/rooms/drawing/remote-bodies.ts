@@ -22,6 +22,8 @@ export interface RemoteBodiesOptions extends RemotePosesOptions {
    * reference is untrusted text: load only what the page expects. Default: the mannequin.
    */
   readonly avatar?: AvatarLoader;
+  /** Returns whether bodies breathe and shift their weight at rest; called in every frame. Default: false. */
+  idles?(): boolean;
 }
 
 /**
@@ -44,9 +46,15 @@ export class RemoteBodies {
   readonly #people = new Map<string, DrawnPeer>();
   readonly #listed: DrawnPeer[] = [];
 
-  constructor({ avatar: load = () => loadMannequin(), onPeerTimeout, ...options }: RemoteBodiesOptions = {}) {
+  constructor({
+    avatar: load = () => loadMannequin(),
+    idles = () => false,
+    onPeerTimeout,
+    ...options
+  }: RemoteBodiesOptions = {}) {
     this.#avatars = new RemoteAvatars({
       load: (avatar) => loadedOrMannequin(load, avatar),
+      idles,
       mouthOf: (peer) => this.#people.get(peer)?.mouth ?? 0,
       onRefused: ({ person }, error) =>
         console.warn(`threepoint-rooms: ${JSON.stringify(person)} has no body: ${reasonOf(error)}`),

@@ -22,6 +22,8 @@ export interface RoomBodiesOptions extends RoomAvatarLoaderOptions {
   readonly load?: ((avatar: AvatarRef) => Promise<Avatar>) | undefined;
   /** Returns whether all people are drawn as the mannequin. Default: false. */
   plain?(): boolean;
+  /** Returns whether bodies breathe and shift their weight at rest. Default: false. */
+  idles?(): boolean;
   /** Returns the opening of a person's mouth, 0 (shut) to 1. Default: 0. */
   mouthOf?(seat: number): number;
   /** Whether a soft shadow lies under each body. Default: false. */
@@ -42,7 +44,7 @@ export class RoomBodies {
 
   constructor(options: RoomBodiesOptions) {
     const { exchange, wear, send, notify, plain = () => false, mouthOf = () => 0, shadows = false } = options;
-    const { gazeTargets } = options;
+    const { idles = () => false, gazeTargets } = options;
     this.#options = options;
     this.#seen = new RoomAvatarLoader(options);
     const load = options.load ?? ((avatar: AvatarRef) => this.#seen.load(avatar));
@@ -51,6 +53,7 @@ export class RoomBodies {
       load,
       plain: defaultAvatar,
       onlyPlain: plain,
+      idles,
       mouthOf,
       onRefused,
       shadows,

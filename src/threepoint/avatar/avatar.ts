@@ -60,6 +60,11 @@ export interface Avatar {
   setPalette(name: string | null): void;
   /** Recolours the skin of the project's own people; null: unchanged. */
   setSkinTone(tone: SkinTone | null): void;
+  /**
+   * Draws the weave of the clothes of the project's own people, which is visible from about 1.2 m on; default: smooth
+   * cloth. It is computed in the program that draws them, and costs time for each pixel. Other avatars stay unchanged.
+   */
+  setClothWeave(on: boolean): void;
   /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
   setOpacity(opacity: number): void;
   /**
@@ -308,6 +313,10 @@ class VrmAvatar implements Avatar {
 
   setSkinTone(tone: SkinTone | null): void {
     this.meshes.setSkinTone(tone);
+  }
+
+  setClothWeave(on: boolean): void {
+    this.meshes.setClothWeave(on);
   }
 
   setOpacity(opacity: number): void {

@@ -22,6 +22,8 @@ interface RemoteAvatarsOptions<Wanted, Id> {
   readonly plain?: Wanted;
   /** Returns whether everybody is drawn in the plain avatar; called in every frame. Default: false. */
   onlyPlain?(): boolean;
+  /** Returns whether bodies breathe and shift their weight at rest; called in every frame. Default: false. */
+  idles?(): boolean;
   /** Returns the opening of a person's mouth: 0 shut to 1; called in every frame for each drawn person. */
   mouthOf(id: Id): number;
   /** Called once for each avatar that cannot be shown; not for an error that passes soon. */
@@ -108,8 +110,9 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
   /** Draws these people and no others, at a time [s] on the clock of the frames. Opacity 0 hides a person's body. */
   show(people: readonly RemotePerson<Wanted, Id>[], time: number): void {
     this.#now = time;
-    const { plain, onlyPlain, mouthOf } = this.#options;
+    const { plain, onlyPlain, mouthOf, idles } = this.#options;
     const only = onlyPlain?.() === true;
+    const idle = idles?.() === true;
     this.#addHeads(people);
     for (const person of people) {
       const { id, opacity } = person;
@@ -120,6 +123,7 @@ export class RemoteAvatars<Wanted extends AvatarRef | PersonalAvatar = AvatarRef
       body.place.visible = visible;
       if (!visible) continue;
       body.look(person, this.#gazeTargets);
+      body.avatar.setIdleMotion(idle);
       body.draw(person, mouthOf(id), time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {

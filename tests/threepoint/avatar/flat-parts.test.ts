@@ -1,8 +1,9 @@
 import { readFileSync } from 'node:fs';
-import type { BufferAttribute, MeshStandardMaterial, SkinnedMesh } from 'three';
+import { type BufferAttribute, MeshStandardMaterial, ShaderLib, type SkinnedMesh } from 'three';
 import { expect, test } from 'vitest';
 import { createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
+import { weaveCloth } from '../../../src/threepoint/avatar/rig/cloth-weave';
 import { FlatPartsMaterial } from '../../../src/threepoint/avatar/rig/flat-parts';
 import { skinnedMeshesOf } from '../../../src/threepoint/avatar/scene-meshes';
 
@@ -42,4 +43,37 @@ test.each([
   expect(meshes).toHaveLength(drawn);
   expect(meshes.some(({ material }) => material instanceof FlatPartsMaterial)).toBe(true);
   expect(all(meshes)).toEqual(file);
+});
+
+test('the weave marks the clothes of a person, and nothing of the mannequin', async () => {
+  const woven = async (name: string) => {
+    const { object } = createAvatar(await read(name));
+    const materials = skinnedMeshesOf(object).flatMap(({ material }) =>
+      material instanceof FlatPartsMaterial ? [material] : [],
+    );
+    return materials.flatMap(({ parts, roughnessMap }) => {
+      const texels = roughnessMap!.image as { readonly data: Float32Array };
+      return parts.flatMap(({ name }, part) => (texels.data[4 * part]! > 0 ? [name] : []));
+    });
+  };
+  expect((await woven('woman')).sort()).toEqual(['Bottom', 'Top']);
+  expect(await woven('mannequin')).toEqual([]);
+});
+
+test('the weave is part of a program only while it is on', () => {
+  const material = new FlatPartsMaterial([new MeshStandardMaterial(), new MeshStandardMaterial()]);
+  const smooth = material.customProgramCacheKey();
+  material.setClothWeave(true);
+  expect(material.customProgramCacheKey()).not.toBe(smooth);
+  material.setClothWeave(false);
+  expect(material.customProgramCacheKey()).toBe(smooth);
+});
+
+test('the weave finds its places in the program of three.js, and reports one that is gone', () => {
+  const { vertexShader, fragmentShader } = ShaderLib.standard;
+  const program = { vertexShader, fragmentShader };
+  weaveCloth(program);
+  expect(program.vertexShader).toContain('vRestPosition = position;');
+  expect(program.fragmentShader.indexOf('float woven')).toBeGreaterThan(fragmentShader.indexOf('normal_fragment_maps'));
+  expect(() => weaveCloth({ vertexShader, fragmentShader: 'void main() {}' })).toThrow('#include <common>');
 });

@@ -46,7 +46,7 @@ const person = (id: number, more: Partial<RemotePerson> = {}): RemotePerson => (
 /** Draws these people until each of them has a body. */
 async function gathered(
   people: readonly RemotePerson[],
-  options: { gazeTargets?: GazeTargets } = {},
+  options: { gazeTargets?: GazeTargets; idles?(): boolean } = {},
 ): Promise<RemoteAvatars> {
   const others = new RemoteAvatars<AvatarRef>({
     load: (avatar) => (isBuiltInAvatar(avatar) ? load(bodyOf(avatar)) : Promise.reject(avatar)),
@@ -117,6 +117,33 @@ describe('bodies of others', () => {
       others.show(alone, 10 + i / 60);
     }
     expect(new Euler().setFromQuaternion(eye.quaternion, 'YXZ').y).toBeCloseTo(0.149, 2);
+    others.dispose();
+  });
+
+  test('breathe and shift their weight while the page wants it, with head and hands in place', async () => {
+    let idle = true;
+    const people = [person(1)];
+    const others = await gathered(people, { idles: () => idle });
+    const joint = (name: string) => ({ ...others.jointsOf(1)![name]! });
+    const names = ['hips', 'chest', 'head', 'leftHand', 'rightHand'];
+    const reachOver = (from: number) => {
+      const first = names.map(joint);
+      const reach = names.map(() => 0);
+      for (let i = 1; i < 600; i++) {
+        others.show(people, from + i / 60);
+        names.forEach((name, k) => {
+          reach[k] = Math.max(reach[k]!, distance(joint(name), first[k]!));
+        });
+      }
+      return Object.fromEntries(names.map((name, k) => [name, reach[k]!]));
+    };
+    const living = reachOver(10);
+    expect(living.hips).toBeGreaterThan(0.002);
+    expect(living.chest).toBeGreaterThan(0.001);
+    for (const name of ['head', 'leftHand', 'rightHand']) expect(living[name]).toBeLessThan(5e-4);
+    idle = false;
+    for (let i = 0; i < 300; i++) others.show(people, 20 + i / 60);
+    expect(Math.max(...Object.values(reachOver(25)))).toBeLessThan(1e-6);
     others.dispose();
   });
 

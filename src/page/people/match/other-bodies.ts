@@ -4,12 +4,23 @@ import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
 import type { AvatarExchange, RoomClient } from 'threepoint-rooms';
 import type { HostedGame } from 'threepoint-rooms/room';
 import { RoomBodies } from 'threepoint-rooms/three';
-import type { ActivityContext } from '../../activity/activity-context';
+import { type ActivityContext, showsIdleMotion } from '../../activity/activity-context';
 import { decoders } from '../../scene/decoders';
 import type { Voices } from '../voices/voices';
 
 export interface OtherBodiesOptions {
-  readonly context: Pick<ActivityContext, 'settings' | 'avatar' | 'notices' | 'gazeTargets' | 'fetchBuiltInAvatar'>;
+  readonly context: Pick<
+    ActivityContext,
+    | 'quality'
+    | 'settings'
+    | 'avatar'
+    | 'notices'
+    | 'gazeTargets'
+    | 'fetchBuiltInAvatar'
+    | 'calm'
+    | 'study'
+    | 'inputSource'
+  >;
   /** null: avatar files are not exchanged in this room. */
   readonly exchange: AvatarExchange | null;
   /** The file of the body that other players have. */
@@ -52,9 +63,14 @@ export function createOtherBodies({ context, exchange, mannequin, play, voices }
     wear: () => (settings.shareAvatar || avatar.isBuiltIn ? avatar.worn : null),
     notify: (level, text) => notices.show(level, text),
     onRefused: (text) => notices.show('info', text),
-    loadBuiltIn: (body) => builtIn.load(body),
+    async loadBuiltIn(body) {
+      const loaded = await builtIn.load(body);
+      loaded.setClothWeave(context.quality === 'high');
+      return loaded;
+    },
     loadFile: (bytes) => loadUntrustedAvatar(bytes, 'the avatar', { check: checkInWorker, decoders }),
     plain: () => settings.plainOthers,
+    idles: () => showsIdleMotion(context, context.inputSource),
     mouthOf: (seat) => voices.seats.mouthOf(seat),
     shadows: true,
     gazeTargets: context.gazeTargets,

@@ -21,7 +21,7 @@ const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megaby
 export const fetchBuiltInAvatar = (name: BuiltInBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
-/** Builds a built-in avatar. `bytes`: its file, at the start of the page, when no frames are drawn that it could delay. */
+/** Builds a built-in avatar. `bytes`: its file, at the start of the page, when no frame is drawn that could be late. */
 export const buildBuiltIn = async (body: BuiltInBody, bytes?: Promise<ArrayBuffer>): Promise<Avatar> => {
   const loaded = await parseAvatar(await (bytes ?? fetchBuiltInAvatar(body)), bodyLabelOf(body));
   return bytes ? createAvatar(loaded) : createAvatarBetweenFrames(loaded);

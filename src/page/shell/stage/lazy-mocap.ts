@@ -88,8 +88,10 @@ export class LazyMocap {
 
   /** Loads a built-in avatar in other colours than those of the first. */
   async #loadAvatar(): Promise<Avatar> {
-    const { builtInBody, palette } = this.#parts.settings;
+    const { quality, settings } = this.#parts;
+    const { builtInBody, palette } = settings;
     const avatar = await buildBuiltIn(builtInBody);
+    avatar.setClothWeave(quality === 'high');
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
     await this.#prepare(avatar.object);
     return avatar;

@@ -281,7 +281,7 @@ export class UserAvatar {
   }
 
   #show({ avatar, ...state }: UserAvatarState, name: string, turn: number): void {
-    const { tracker, settings, notices } = this.#parts;
+    const { quality, tracker, settings, notices } = this.#parts;
     tracker.setAvatar(avatar);
     this.#name = name;
     this.#state = state;
@@ -292,7 +292,10 @@ export class UserAvatar {
       notices.withdraw('avatar');
     }
     this.recolour();
-    if (typeof state.worn === 'string') avatar.setSkinTone(skinToneOf(state.worn));
+    if (typeof state.worn === 'string') {
+      avatar.setSkinTone(skinToneOf(state.worn));
+      avatar.setClothWeave(quality === 'high');
+    }
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
   }
 }

@@ -37,12 +37,8 @@ function addLeaf(stem: Vector3, direction: Vector3, size: number, shade: Color, 
     const middle = stem.clone().addScaledVector(direction, share * size);
     middle.y += size * (0.28 * share - 0.62 * share * share);
     const half = 0.32 * size * width;
-    const edge = (side: number) =>
-      middle
-        .clone()
-        .addScaledVector(across, side * half)
-        .setY(middle.y + 0.25 * half);
-    return { middle, edges: [edge(-1), edge(1)] };
+    const lifted = middle.clone().setY(middle.y + 0.25 * half);
+    return { middle, edges: [-half, half].map((out) => lifted.clone().addScaledVector(across, out)) };
   });
   const add = (a: Vector3, b: Vector3, c: Vector3) => {
     const normal = first.subVectors(b, a).cross(second.subVectors(c, a)).normalize();

@@ -185,6 +185,12 @@ export class BodyMeshes {
     if (tone) this.recolour({ Skin: skinColors[tone] });
   }
 
+  /** Draws the weave of the cloth of this project's people, or leaves it smooth. */
+  setClothWeave(on: boolean): void {
+    for (const { mesh } of this.meshes)
+      for (const material of materialsOf(mesh)) if (material instanceof FlatPartsMaterial) material.setClothWeave(on);
+  }
+
   private recolour(colors: Readonly<Record<string, string>>): void {
     for (const { mesh } of this.meshes) {
       for (const material of materialsOf(mesh)) {

@@ -13,6 +13,7 @@ import {
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import type { Steps } from '../between-frames';
 import { skinnedMeshesOf } from '../scene-meshes';
+import { weaveCloth, weaves } from './cloth-weave';
 
 type FlatMesh = SkinnedMesh<BufferGeometry, MeshStandardMaterial>;
 
@@ -54,10 +55,16 @@ export class FlatPartsMaterial extends MeshStandardMaterial {
       return texture;
     };
     this.#colors = row(parts.map(({ color }) => [...color.toArray(), 1]));
-    const surfaces = row(parts.map(({ roughness, metalness }) => [1, roughness, metalness, 1]));
+    const surfaces = row(parts.map(({ name, roughness, metalness }) => [weaves[name] ?? 0, roughness, metalness, 1]));
     this.map = this.#colors;
     this.roughnessMap = surfaces;
     this.metalnessMap = surfaces;
+  }
+
+  /** Draws the weave of the cloth of the project's own people, or leaves their cloth smooth, as it is at first. */
+  setClothWeave(on: boolean): void {
+    this.onBeforeCompile = on ? weaveCloth : super.onBeforeCompile;
+    this.needsUpdate = true;
   }
 
   /** Recolours the materials with these names: CSS colours. */
