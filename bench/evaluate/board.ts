@@ -1,7 +1,6 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { type Calibration, reasonOf, skeletonFromCalibration } from 'threepoint/core';
-import { Pipeline } from '../../src/threepoint/core/estimation/pipeline';
 import { type BoardMethod, isFieldNetwork, startFieldNetwork } from '../board-methods';
 import { createCcdBody } from '../page/ccd-body';
 import { lasting, loseHands, scheduleLosses, seedOf } from './disturbances';
@@ -11,7 +10,7 @@ import { addClip, emptyMeasures, report } from './measures';
 import { loadRegressors } from './networks';
 import { calibrationOf, peopleOf, type RecordingIndex, readClip, readIndex } from './recordings';
 import { chooseClips } from './robustness';
-import { createWindowSource } from './window-source';
+import { createWithWindows } from './window-source';
 
 const { recordings, networks, method, json, elsewhere, frames } = JSON.parse(process.argv[2] ?? '') as Readonly<
   Record<'recordings' | 'networks' | 'json', string> & {
@@ -48,10 +47,7 @@ async function openMethod(): Promise<(calibration: Calibration) => Driver<DrawnF
   }
   const bytes = readFileSync(join(networks, `${method}.onnx`));
   const regressor = await startFieldNetwork(ours.get('learned')!.contract, bytes);
-  return (calibration) => {
-    const estimator = new Pipeline('learned', calibration, createWindowSource(calibration, regressor));
-    return pipelineDriver(method, estimator, calibration);
-  };
+  return (calibration) => pipelineDriver(method, createWithWindows(calibration, regressor), calibration);
 }
 
 /** Measures the method on some of these clips, undisturbed and with lost hands. */

@@ -63,10 +63,15 @@ def methods(errors: dict[str, Json], sizes: dict[str, Json], times: dict[str, Js
         measured, size = errors.get(method, {"heldOut": None, "elsewhere": None}), sizes.get(method)
         cost = [f"{size['parameters']:,}", f"{size['multiplyAdds'] / 1e6:.1f}"] if size else ["–", "–"]
         figures = [*_figures(measured["heldOut"]), _cm(measured["elsewhere"])]
-        return [LABELS[method], *figures, *cost, f"{times[method]['p50Ms']:.2f}"]
+        return [LABELS[method], *figures, *cost, _milliseconds(times[method])]
 
     head = ["", "all joints [cm]", "network alone", "elbows", "jerk", "lost hand: all", "its elbow"]
-    return table([*head, "another laboratory", "parameters", "multiply-adds [M]", "ms a frame"], map(row, LABELS))
+    costs = ["parameters", "multiply-adds [M]", "ms a frame: p10 / p50"]
+    return table([*head, "another laboratory", *costs], map(row, LABELS))
+
+
+def _milliseconds(time: Json) -> str:
+    return " / ".join(f"{time[key]:.2f}" for key in ("p10Ms", "p50Ms"))
 
 
 def _cm(measured: Json | None) -> str:

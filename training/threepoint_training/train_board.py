@@ -35,8 +35,7 @@ from .window_features import FRAMES, INPUTS, window_features
 Json = dict[str, Any]
 Report = Callable[[str], None]
 
-# People of the training on whom the networks are watched, and on whom they are not trained: basketball, tai chi,
-# conversation.
+# People whose error ends a training, and who are left out of it: basketball, tai chi, conversation.
 VALIDATION = ("006", "012", "018", "019")
 
 
@@ -131,9 +130,7 @@ class _Training:
         begun = time.process_time()
         drawn = _drawn(self.parts, config.batch, config.augment, self.random)
         self.network.train()
-        with torch.autocast("cpu", torch.bfloat16):
-            joints = self.network.joints(drawn.inputs)
-        loss = (joints - drawn.targets).norm(dim=-1).mean()
+        loss = (self.network.joints(drawn.inputs) - drawn.targets).norm(dim=-1).mean()
         self.optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
@@ -205,7 +202,9 @@ def sizes() -> dict[str, Json]:
     }
 
 
-def _train(name: str, config: BoardConfig, options: Json, sides: dict[str, BodyParts], file: Path, report: Report) -> Json:
+def _train(
+    name: str, config: BoardConfig, options: Json, sides: dict[str, BodyParts], file: Path, report: Report
+) -> Json:
     """Trains one network until its error on the validation people stops falling or the budget ends; writes NAME.onnx
     and returns the figures.
     """
@@ -218,7 +217,7 @@ def _train(name: str, config: BoardConfig, options: Json, sides: dict[str, BodyP
         if training.step % config.watch_every == 0 or training.step == config.steps:
             error = training.look(validation)
             training.save(file.with_suffix(".checkpoint"), options)
-            report(f"{file.stem}: step {training.step}, {error:.2f} cm on the validation people, {training.seconds:.0f} s")
+            report(f"{name}: step {training.step}, {error:.2f} cm on the validation people, {training.seconds:.0f} s")
     best = NETWORKS[name]()
     best.load_state_dict(training.best)
     file.with_suffix(".onnx").write_bytes(
