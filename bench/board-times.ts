@@ -6,9 +6,7 @@ import { findChromium } from '../scripts/chromium.mjs';
 import { builtPages, outcomeOf, withPage, withServed } from './bench-page';
 import { type BoardTime, fieldNetworks, timedMethods } from './board-methods';
 
-const { networks, seed, json } = JSON.parse(process.argv[2] ?? '') as Readonly<
-  Record<'networks' | 'seed' | 'json', string>
->;
+const { networks, json } = JSON.parse(process.argv[2] ?? '') as Readonly<Record<'networks' | 'json', string>>;
 
 /** Measures every method of the board on a page of its own, in headless Chromium. */
 async function main(): Promise<void> {
@@ -20,7 +18,7 @@ async function main(): Promise<void> {
       for (const method of timedMethods) {
         times[method] = await withPage(browser, [320, 200], async (page) => {
           for (const name of fieldNetworks) {
-            const body = readFileSync(join(networks, `${name}-${seed}.onnx`));
+            const body = readFileSync(join(networks, `${name}.onnx`));
             await page.route(`**/board/${name}.onnx`, (route) => route.fulfill({ body }));
           }
           await page.goto(`${address}/board.html?method=${method}`);
@@ -29,7 +27,7 @@ async function main(): Promise<void> {
         console.log(`${method}: ${times[method].p50Ms.toFixed(3)} ms a frame`);
       }
     });
-    writeFileSync(json, `${JSON.stringify({ browser: browser.version(), times })}\n`);
+    writeFileSync(json, `${JSON.stringify(times)}\n`);
   } finally {
     await browser.close();
   }

@@ -9,7 +9,7 @@ import { ensureChromium } from './chromium.mjs';
 import { passedOn, readOptions } from './command-line.mjs';
 import { ensureInstalled } from './installation.mjs';
 import { prepareRecordings, runTraining } from './python-environment.mjs';
-import { root, run, runProgram } from './run-command.mjs';
+import { root, run, runProgram, SetupError } from './run-command.mjs';
 
 const usage =
   'npm run tool -- train --board --mocap DIR [--skeleton MAP.json] [--seed N] [--steps N] [--threads N] [--frames N]\n' +
@@ -23,25 +23,27 @@ function options() {
   });
 }
 
-/** Runs a measurement whose results file does not exist; a run that ends half-way leaves none that looks finished. */
-async function measureOnce(json, measure) {
-  if (existsSync(json)) {
-    console.log(`${json}: finished before`);
-    return 0;
+/** Measures into files that do not exist; a measurement that ends half-way leaves none that looks finished. */
+async function measureMissing(files, measure) {
+  for (const [name, json] of Object.entries(files).filter(([, file]) => !existsSync(file))) {
+    const code = await measure(name, `${json}.unfinished`);
+    if (code !== 0) return code;
+    renameSync(`${json}.unfinished`, json);
   }
-  const code = await measure(`${json}.unfinished`);
-  if (code === 0) renameSync(`${json}.unfinished`, json);
-  return code;
+  return 0;
 }
 
-/** Measures every method on the people held out; resolves to an exit code. */
-async function measureErrors(given, { heldOut, elsewhere }, measured) {
+/** Measures methods on the people held out, each into its file; resolves to an exit code. */
+async function measureErrors(given, { heldOut, elsewhere }, files, measured) {
+  if (Object.values(files).every(existsSync)) return 0;
   const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
   try {
     const people = [...heldOut, ...elsewhere].join(',');
     const prepared = await prepareRecordings({ ...given, people }, recordings);
     if (prepared !== 0) return prepared;
-    return await runProgram('bench/evaluate/board.ts', [JSON.stringify({ ...measured, recordings, elsewhere })]);
+    return await measureMissing(files, (method, json) =>
+      runProgram('bench/evaluate/board.ts', [JSON.stringify({ ...measured, recordings, elsewhere, method, json })]),
+    );
   } finally {
     rmSync(recordings, { recursive: true, force: true });
   }
@@ -60,26 +62,24 @@ async function measureTimes(measured) {
 export async function trainBoard() {
   const given = options();
   await ensureInstalled();
-  const training = [...passedOn(given, ['mocap', 'skeleton', 'seed', 'steps', 'threads']), '--board'];
-  const trained = await runTraining('threepoint_training', training, { extras: ['train'] });
+  const training = { extras: ['train'] };
+  const trainingOptions = [...passedOn(given, ['mocap', 'skeleton', 'seed', 'steps', 'threads']), '--board'];
+  const trained = await runTraining('threepoint_training', trainingOptions, training);
   if (trained.code !== 0) return trained.code;
   const page = passedOn(given, ['mocap', 'skeleton', 'seed']);
-  const asked = await runTraining('threepoint_training.board_page', [...page, '--stages'], {
-    extras: ['train'],
-    capture: true,
-  });
-  if (asked.code !== 0) return asked.code;
-  const { folder: networks, seed, files, ...people } = JSON.parse(asked.output.trim().split('\n').at(-1));
+  const asked = await runTraining('threepoint_training.board_page', page, { ...training, capture: true });
+  if (asked.code !== 0) throw new SetupError(asked.output.trim());
+  const { folder, networks, methods, ...people } = JSON.parse(asked.output.trim().split('\n').at(-1));
   const frames = Number(given.frames ?? 12_000);
   const hash = createHash('sha256').update(`${frames}`);
-  for (const file of files) hash.update(readFileSync(join(networks, file)));
+  for (const network of networks) hash.update(readFileSync(join(folder, `${network}.onnx`)));
   const name = hash.digest('hex').slice(0, 16);
-  const [errors, times] = ['errors', 'times'].map((kind) => join(networks, `${kind}-${name}.json`));
-  const measured = { networks, seed, frames };
+  const fileOf = (part) => join(folder, `${part}-${name}.json`);
+  const files = Object.fromEntries(methods.map((method) => [method, fileOf(method)]));
+  const measured = { networks: folder, frames };
   const code =
-    (await measureOnce(errors, (json) => measureErrors(given, people, { ...measured, json }))) ||
-    (await measureOnce(times, (json) => measureTimes({ ...measured, json })));
+    (await measureErrors(given, people, files, measured)) ||
+    (await measureMissing({ times: fileOf('times') }, (_, json) => measureTimes({ ...measured, json })));
   if (code !== 0) return code;
-  const written = [...page, '--errors', errors, '--times', times];
-  return (await runTraining('threepoint_training.board_page', written, { extras: ['train'] })).code;
+  return (await runTraining('threepoint_training.board_page', [...page, '--measured', name], training)).code;
 }

@@ -1,9 +1,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { type Calibration, reasonOf, recordOf, skeletonFromCalibration } from 'threepoint/core';
-import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
-import { Pipeline } from '../../src/threepoint/core/estimation/pipeline';
-import { type BoardMethod, boardMethods, fieldNetworks, startFieldNetwork } from '../board-methods';
+import { type Calibration, reasonOf, skeletonFromCalibration } from 'threepoint/core';
+import { type BoardMethod, isFieldNetwork, startFieldNetwork } from '../board-methods';
 import { createCcdBody } from '../page/ccd-body';
 import { lasting, loseHands, scheduleLosses, seedOf } from './disturbances';
 import { createDriver, type DrawnFrame, type Driver, driveFrames, pipelineDriver } from './drive';
@@ -12,16 +10,18 @@ import { addClip, emptyMeasures, report } from './measures';
 import { loadRegressors } from './networks';
 import { calibrationOf, peopleOf, type RecordingIndex, readClip, readIndex } from './recordings';
 import { chooseClips } from './robustness';
-import { createWindowSource } from './window-source';
+import { createWithWindows } from './window-source';
 
-const options = JSON.parse(process.argv[2] ?? '') as Readonly<
-  Record<'recordings' | 'networks' | 'seed' | 'json', string> & { elsewhere: readonly string[]; frames: number }
+const { recordings, networks, method, json, elsewhere, frames } = JSON.parse(process.argv[2] ?? '') as Readonly<
+  Record<'recordings' | 'networks' | 'json', string> & {
+    method: BoardMethod;
+    elsewhere: readonly string[];
+    frames: number;
+  }
 >;
 
 /** Two seconds, as in docs/accuracy.md: the same clip has the same losses there. */
 const lossSeconds = 2;
-
-type Drivers = (method: BoardMethod, calibration: Calibration) => Driver<DrawnFrame>;
 
 /** Drives three's solver. */
 function ccdDriver(calibration: Calibration): Driver<DrawnFrame> {
@@ -38,72 +38,60 @@ function ccdDriver(calibration: Calibration): Driver<DrawnFrame> {
   };
 }
 
-/** Starts every network of the board. */
-async function openDrivers(): Promise<Drivers> {
-  const ours = await loadRegressors(options.networks);
-  const field = new Map<string, PoseRegressor>();
-  for (const name of fieldNetworks) {
-    const bytes = readFileSync(join(options.networks, `${name}-${options.seed}.onnx`));
-    field.set(name, await startFieldNetwork(ours.get('learned')!.contract, bytes));
+/** Starts the method; resolves to what drives it for the person of a clip. */
+async function openMethod(): Promise<(calibration: Calibration) => Driver<DrawnFrame>> {
+  if (method === 'ccd') return ccdDriver;
+  const ours = await loadRegressors(networks);
+  if (!isFieldNetwork(method)) {
+    return (calibration) => createDriver(method, calibration, ours.get(method) ?? null);
   }
-  return (method, calibration) => {
-    if (method === 'ccd') return ccdDriver(calibration);
-    const regressor = field.get(method);
-    if (regressor)
-      return pipelineDriver(
-        method,
-        new Pipeline('learned', calibration, createWindowSource(calibration, regressor)),
-        calibration,
-      );
-    const name = method as 'ik' | 'paper' | 'learned';
-    return createDriver(name, calibration, name === 'ik' ? null : ours.get(name)!);
-  };
+  const bytes = readFileSync(join(networks, `${method}.onnx`));
+  const regressor = await startFieldNetwork(ours.get('learned')!.contract, bytes);
+  return (calibration) => pipelineDriver(method, createWithWindows(calibration, regressor), calibration);
 }
 
-/** Measures every method on some of these clips, undisturbed and with lost hands. */
-async function measureClips(index: RecordingIndex, clips: RecordingIndex['clips'], drivers: Drivers) {
-  const chosen = chooseClips(clips, options.frames);
-  const measures = recordOf(boardMethods, emptyMeasures);
-  const tallies = recordOf(boardMethods, emptyLossTally);
+/** Measures the method on some of these clips, undisturbed and with lost hands. */
+async function measureClips(
+  index: RecordingIndex,
+  clips: RecordingIndex['clips'],
+  driverOf: (calibration: Calibration) => Driver<DrawnFrame>,
+) {
+  const chosen = chooseClips(clips, frames);
+  const measures = emptyMeasures();
+  const tally = emptyLossTally();
   for (const clip of chosen) {
     const calibration = calibrationOf(index, clip);
-    const frames = readClip(options.recordings, index, clip);
-    const seed = seedOf(`${clip.name} ${lossSeconds}`);
-    const losses = scheduleLosses(frames.length, index.rateHz, lasting(lossSeconds), seed);
-    for (const method of boardMethods) {
-      const seen = await driveFrames(drivers(method, calibration), frames);
-      addClip(measures[method], seen, index.rateHz);
-      if (losses.length === 0) continue;
-      const lossy = await driveFrames(drivers(method, calibration), loseHands(frames, losses));
-      addLosses(tallies[method], { lossy, seen }, losses, index.rateHz);
-    }
-    console.log(`  ${clip.name}`);
+    const recorded = readClip(recordings, index, clip);
+    const seen = await driveFrames(driverOf(calibration), recorded);
+    addClip(measures, seen, index.rateHz);
+    const lengths = seedOf(`${clip.name} ${lossSeconds}`);
+    const losses = scheduleLosses(recorded.length, index.rateHz, lasting(lossSeconds), lengths);
+    if (losses.length === 0) continue;
+    const lossy = await driveFrames(driverOf(calibration), loseHands(recorded, losses));
+    addLosses(tally, { lossy, seen }, losses, index.rateHz);
   }
   return {
     people: peopleOf(chosen),
     clips: chosen.length,
-    frames: chosen.reduce((sum, { frames }) => sum + frames, 0),
-    methods: recordOf(boardMethods, (method) => ({
-      ...report(measures[method]),
-      loss: reportLosses(tallies[method]),
-    })),
+    frames: chosen.reduce((sum, clip) => sum + clip.frames, 0),
+    ...report(measures),
+    loss: tally.losses > 0 ? reportLosses(tally) : null,
   };
 }
 
 async function main(): Promise<void> {
-  const index = readIndex(options.recordings);
-  const drivers = await openDrivers();
-  const isElsewhere = ({ person }: { readonly person: string }) => options.elsewhere.includes(person);
+  const index = readIndex(recordings);
+  const driverOf = await openMethod();
+  const isElsewhere = ({ person }: RecordingIndex['clips'][number]) => elsewhere.includes(person);
   const heldOut = await measureClips(
     index,
     index.clips.filter((clip) => !isElsewhere(clip)),
-    drivers,
+    driverOf,
   );
-  const others = index.clips.filter(isElsewhere);
-  const elsewhere = others.length > 0 ? await measureClips(index, others, drivers) : null;
-  writeFileSync(options.json, `${JSON.stringify({ heldOut, elsewhere })}\n`);
-  for (const method of boardMethods)
-    console.log(`${method}: MPJPE ${heldOut.methods[method].mpjpeCm.mean.toFixed(2)} cm`);
+  const clips = index.clips.filter(isElsewhere);
+  const others = clips.length > 0 ? await measureClips(index, clips, driverOf) : null;
+  writeFileSync(json, `${JSON.stringify({ heldOut, elsewhere: others })}\n`);
+  console.log(`${method}: MPJPE ${heldOut.mpjpeCm.mean.toFixed(2)} cm`);
 }
 
 await main().catch((error: unknown) => {

@@ -18,6 +18,7 @@ import { copyJoints, makeJoints, transformJoints } from '../../src/threepoint/co
 import type { JointSource, SolvedFrame } from '../../src/threepoint/core/estimation/joint-source';
 import { LatestResult } from '../../src/threepoint/core/estimation/networks/latest-result';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import { Pipeline } from '../../src/threepoint/core/estimation/pipeline';
 import { floorFromHeading, headingFromFloor } from '../../src/threepoint/core/tracking/heading';
 
 /** The frames of a window, and the numbers of each (training/threepoint_training/board_networks.py). */
@@ -66,7 +67,7 @@ export function windowFeatures(frames: readonly TrackedPoints[], calibration: Ca
 }
 
 /** Creates a source with a network over windows of trackers. Inverse kinematics supplies joints before its result. */
-export function createWindowSource(calibration: Calibration, regressor: PoseRegressor): JointSource {
+function createWindowSource(calibration: Calibration, regressor: PoseRegressor): JointSource {
   const frames: TrackedPoints[] = [];
   const answered = makeJoints();
   let newest: Float32Array | null = null;
@@ -116,3 +117,7 @@ export function createWindowSource(calibration: Calibration, regressor: PoseRegr
     },
   };
 }
+
+/** Creates an estimator with a network over windows of trackers; the stages of the page do the rest. */
+export const createWithWindows = (calibration: Calibration, regressor: PoseRegressor): Pipeline =>
+  new Pipeline('learned', calibration, createWindowSource(calibration, regressor));

@@ -24,6 +24,12 @@ def test_a_run_has_one_seed_for_both_networks():
         assert (config.paper.seed, config.learned.seed) == (3, 3)
 
 
+def test_a_board_has_one_seed_for_all_networks_and_bounds_those_of_the_field():
+    config = config_of(["--generated", "--board", "--seed", "3", "--steps", "7"])
+    assert (config.paper.seed, config.learned.seed, config.board.seed) == (3, 3, 3)
+    assert (config.board.steps, config.learned.steps) == (7, TrainConfig.learned.steps)
+
+
 @pytest.mark.parametrize(
     ("option", "task"), [("--select", "selection"), ("--online-calibration", "online calibration"), ("--lockbox", "lockbox")]
 )

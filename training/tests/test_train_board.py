@@ -47,14 +47,14 @@ def run(corpus, config):
     return train_board.main(corpus, config, printed.append), printed
 
 
-def figures(folder, name="memory-2460"):
-    return json.loads((folder / f"{name}.json").read_text())["figures"]
+def figures(folder):
+    return json.loads((folder / "memory.json").read_text())["figures"]
 
 
 def weights(folder):
     import onnx
 
-    graph = onnx.load(folder / "memory-2460.onnx").graph
+    graph = onnx.load(folder / "memory.onnx").graph
     return np.concatenate([onnx.numpy_helper.to_array(each).astype(float).ravel() for each in graph.initializer])
 
 
@@ -118,10 +118,10 @@ def test_an_ended_training_goes_on_to_the_weights_of_one_that_ran_through(corpus
 
 def test_a_finished_training_is_not_run_again_and_states_its_budget(corpus, board):
     folder, _ = run(corpus, board)
-    written = (folder / "memory-2460.onnx").stat().st_mtime_ns
+    written = (folder / "memory.onnx").stat().st_mtime_ns
     _, printed = run(corpus, board)
-    assert printed == ["memory-2460: finished before"]
-    assert (folder / "memory-2460.onnx").stat().st_mtime_ns == written
+    assert printed == ["memory: finished before"]
+    assert (folder / "memory.onnx").stat().st_mtime_ns == written
     found = figures(folder)
     assert (found["steps"], found["windows"]) == (6, 24)
     assert found["validationCm"] == min(cm for _, cm in found["curve"])
@@ -145,7 +145,7 @@ def test_a_damaged_checkpoint_is_refused_and_finished_trainings_stay(corpus, boa
     from threepoint_training.motion_files import MocapError
 
     folder, _ = run(corpus, board)
-    checkpoint = folder / "memory-2460.checkpoint"
+    checkpoint = folder / "memory.checkpoint"
     checkpoint.write_bytes(checkpoint.read_bytes()[:1000])
     with pytest.raises(MocapError, match="Remove it, and this network is trained again"):
         run(corpus, replace(board, steps=8))

@@ -132,14 +132,14 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
     if unknown := set(config.networks) - set(TrainConfig.networks):
         parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
     config = quick(config) if given.quick else config
-    if config.task == "board":
-        budget = config.board.steps if given.steps is None else given.steps
-        return replace(config, board=replace(config.board, seed=config.seed, steps=budget))
-    steps = config.learned.steps if given.steps is None else given.steps
+    steps = {"learned": config.learned.steps, "board": config.board.steps}
+    if given.steps is not None:
+        steps["board" if config.task == "board" else "learned"] = given.steps
     return replace(
         config,
         paper=replace(config.paper, seed=config.seed),
-        learned=replace(config.learned, seed=config.seed, steps=steps),
+        learned=replace(config.learned, seed=config.seed, steps=steps["learned"]),
+        board=replace(config.board, seed=config.seed, steps=steps["board"]),
     )
 
 

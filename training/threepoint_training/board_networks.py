@@ -66,10 +66,15 @@ class WindowNetwork(nn.Module):
         return self.joints(inputs)[:, : len(ESTIMATED_JOINTS)].flatten(1)
 
     def joints(self, inputs: Tensor) -> Tensor:
-        """The six joints and both wrists [N, 8, 3], with the head joint where the headset has it."""
+        """The six joints and both wrists [N, 8, 3], with the head joint where the headset has it. Training computes the
+        rotations with 16 bits.
+        """
         frames = ((inputs[:, :-1] - self.mean) / self.scale).view(-1, FRAMES, FRAME_FEATURES)
         upright = inputs.new_tensor([1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
-        local = _matrices(self.rotations(frames).float() + upright)
+        # Kinematics in 16 bits would be off by millimetres.
+        with torch.autocast("cpu", torch.bfloat16, enabled=self.training):
+            numbers = self.rotations(frames)
+        local = _matrices(numbers.float() + upright)
         turns, places = {"hips": local[:, 0]}, {"hips": torch.zeros_like(inputs[:, :3])}
         for number, (joint, parent) in enumerate((_PARENTS | _ENDS).items()):
             offset = (turns[parent] @ self._offset(joint, inputs).unsqueeze(-1)).squeeze(-1)

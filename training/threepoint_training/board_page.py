@@ -21,8 +21,10 @@ from .train_board import BoardConfig
 Json = dict[str, Any]
 
 PAGE = REPOSITORY / "docs/board.md"
+# The method without a body, of which only the time is measured.
+NO_BODY = "hands-only"
 LABELS = {
-    "hands-only": "hands only",
+    NO_BODY: "hands only",
     "ccd": "CCD-IK (three.js)",
     "ik": "our IK",
     "paper": "`paper`",
@@ -32,42 +34,44 @@ LABELS = {
 }
 
 
-def stages(corpus: PreparedCorpus, config: BoardConfig) -> Json:
-    """What is measured: the people held out and of another laboratory, and the folder with the files of networks."""
+def to_measure(corpus: PreparedCorpus, config: BoardConfig) -> Json:
+    """The people and methods that are measured, and the networks with their folder."""
     return {
         "folder": str(train_board.folder_of(corpus, config)),
-        "seed": str(config.seed),
-        "files": ["paper.onnx", "learned.onnx", *(f"{name}-{config.seed}.onnx" for name in config.networks)],
+        "networks": ["paper", "learned", *config.networks],
+        "methods": [method for method in LABELS if method != NO_BODY],
         "heldOut": FOLDS["board"],
         "elsewhere": evaluation_only(tuple(corpus.people)),
     }
 
 
-def corpus_in_words(errors: Json) -> str:
+def corpus_in_words(errors: dict[str, Json]) -> str:
     """Returns what was measured: people, clips and frames."""
-    groups = {"Held out": errors["heldOut"], "another laboratory": errors["elsewhere"]}
+    anyone = next(iter(errors.values()))
     words = (
         f"{label}: {', '.join(group['people'])}, {group['clips']} clips, {group['frames']:,} frames"
-        for label, group in groups.items()
+        for label, group in (("Held out", anyone["heldOut"]), ("another laboratory", anyone["elsewhere"]))
         if group
     )
     return f"{'; '.join(words)}."
 
 
-def methods(errors: Json, sizes: Json, times: Json) -> str:
-    """Returns the board."""
+def methods(errors: dict[str, Json], sizes: dict[str, Json], times: dict[str, Json]) -> str:
+    """Returns the board, from errors, sizes and times by method."""
 
     def row(method: str) -> list[str]:
-        own, elsewhere = (((errors[group] or {}).get("methods") or {}).get(method) for group in ("heldOut", "elsewhere"))
-        size, time = sizes.get(method), times["times"][method]
+        measured, size = errors.get(method, {"heldOut": None, "elsewhere": None}), sizes.get(method)
         cost = [f"{size['parameters']:,}", f"{size['multiplyAdds'] / 1e6:.1f}"] if size else ["–", "–"]
-        return [LABELS[method], *_figures(own), _cm(elsewhere), *cost, f"{time['p50Ms']:.2f}"]
+        figures = [*_figures(measured["heldOut"]), _cm(measured["elsewhere"])]
+        return [LABELS[method], *figures, *cost, _milliseconds(times[method])]
 
     head = ["", "all joints [cm]", "network alone", "elbows", "jerk", "lost hand: all", "its elbow"]
-    return table(
-        [*head, "another laboratory", "parameters", "multiply-adds [M]", "ms a frame"],
-        map(row, LABELS),
-    )
+    costs = ["parameters", "multiply-adds [M]", "ms a frame: p10 / p50"]
+    return table([*head, "another laboratory", *costs], map(row, LABELS))
+
+
+def _milliseconds(time: Json) -> str:
+    return " / ".join(f"{time[key]:.2f}" for key in ("p10Ms", "p50Ms"))
 
 
 def _cm(measured: Json | None) -> str:
@@ -78,10 +82,10 @@ def _figures(measured: Json | None) -> list[str]:
     if measured is None:
         return ["–"] * 6
     elbows = sum(measured["joints"][joint]["mean"] for joint in ("leftElbow", "rightElbow")) / 2
-    lost = measured["loss"]["during"]
+    lost = (measured["loss"] or {}).get("during")
     raw = f"{measured['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in measured else "–"
-    figures = (f"{value:.2f}" for value in (elbows, measured["jerkRatio"], lost["allCm"], lost["elbowCm"]))
-    return [_cm(measured), raw, *figures]
+    in_loss = [f"{lost[key]:.2f}" for key in ("allCm", "elbowCm")] if lost else ["–", "–"]
+    return [_cm(measured), raw, f"{elbows:.2f}", f"{measured['jerkRatio']:.2f}", *in_loss]
 
 
 def trainings(found: dict[str, Json]) -> str:
@@ -101,31 +105,36 @@ def trainings(found: dict[str, Json]) -> str:
     return table([*head, "ended while it fell"], rows)
 
 
-def main(folder: Path, config: BoardConfig, errors: Path, times: Path, page: Path = PAGE) -> None:
-    """Writes the page's tables."""
+def main(folder: Path, config: BoardConfig, name: str, page: Path = PAGE) -> None:
+    """Writes the page's tables from the measurements of this name; one that is missing raises MocapError."""
+
+    def measured(part: str) -> Json:
+        try:
+            return json.loads((folder / f"{part}-{name}.json").read_text())
+        except (OSError, ValueError) as error:
+            raise MocapError(f"{folder} has no finished measurement of {part}: {error}") from error
+
     found = {}
-    for name in config.networks:
-        figures = read_stage(folder / f"{name}-{config.seed}.json", None)
+    for network in config.networks:
+        figures = read_stage(folder / f"{network}.json", None)
         if figures is None:
-            raise MocapError(f"{folder} has no finished training of {name} with the seed {config.seed}.")
-        found[name] = figures
-    measured, sizes = json.loads(errors.read_text()), train_board.sizes()
+            raise MocapError(f"{folder} has no finished training of {network}")
+        found[network] = figures
+    errors = {method: measured(method) for method in LABELS if method != NO_BODY}
     sections = {
-        "corpus": corpus_in_words(measured),
-        "methods": methods(measured, sizes, json.loads(times.read_text())),
+        "corpus": corpus_in_words(errors),
+        "methods": methods(errors, train_board.sizes(), measured("times")),
         "trainings": trainings(found),
     }
     page.write_text(renew(page.read_text(), sections))
 
 
 def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description="Tables of docs/board.md from what was measured.")
+    parser = argparse.ArgumentParser(description="What docs/board.md needs measured, or its tables from that.")
     parser.add_argument("--mocap", type=Path, required=True)
     parser.add_argument("--skeleton", type=Path)
     parser.add_argument("--seed", type=int, default=BoardConfig.seed)
-    parser.add_argument("--stages", action="store_true", help="print as JSON what is measured")
-    parser.add_argument("--errors", type=Path)
-    parser.add_argument("--times", type=Path)
+    parser.add_argument("--measured", help="the name of the measurements; without it, prints what to measure")
     return parser.parse_args()
 
 
@@ -134,9 +143,9 @@ if __name__ == "__main__":
     config = replace(BoardConfig(), seed=given.seed)
     try:
         corpus = prepare.main(prepare.PrepareConfig(given.mocap, given.skeleton, cache=REPOSITORY / ".cache/mocap"))
-        if given.stages:
-            print(json.dumps(stages(corpus, config)))
+        if given.measured:
+            main(train_board.folder_of(corpus, config), config, given.measured)
         else:
-            main(train_board.folder_of(corpus, config), config, given.errors, given.times)
+            print(json.dumps(to_measure(corpus, config)))
     except MocapError as error:
         sys.exit(f"train: {error}")

@@ -280,7 +280,8 @@ def window_vectors() -> list[dict[str, Any]]:
         joints, turns = generate_clip(random, WINDOW_FRAMES + 1, Person("golden", person.eye_height, person.arm_span))
         trackers = TrackerConfig()
         positions, rotations = simulate(joints, turns, draw_wearer(trackers, random), trackers, random)
-        features = window_features(positions[None], rotations[None], body_from_calibration(*np.array([[person.eye_height], [person.arm_span]])))[0]
+        body = body_from_calibration(*np.array([[person.eye_height], [person.arm_span]]))
+        features = window_features(positions[None], rotations[None], body)[0]
         case = {"positions": positions, "rotations": rotations, "features": features}
         cases.append({"calibration": person.calibration(), **case})
     return cases

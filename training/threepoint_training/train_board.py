@@ -35,14 +35,13 @@ from .window_features import FRAMES, INPUTS, window_features
 Json = dict[str, Any]
 Report = Callable[[str], None]
 
-# People of the training on whom the networks are watched, and on whom they are not trained: basketball, tai chi,
-# conversation.
+# People whose error ends a training, and who are left out of it: basketball, tai chi, conversation.
 VALIDATION = ("006", "012", "018", "019")
 
 
 @dataclass(frozen=True)
 class BoardConfig:
-    """out: the folder of the stages, in a folder for each corpus. steps: the budget of a training.
+    """out: the folder of the stages, in a folder for each corpus and seed. steps: the budget of a training.
 
     A training ends earlier when the error on the validation people has not fallen at `patience` looks in a row.
     """
@@ -131,9 +130,7 @@ class _Training:
         begun = time.process_time()
         drawn = _drawn(self.parts, config.batch, config.augment, self.random)
         self.network.train()
-        with torch.autocast("cpu", torch.bfloat16):
-            joints = self.network.joints(drawn.inputs)
-        loss = (joints - drawn.targets).norm(dim=-1).mean()
+        loss = (self.network.joints(drawn.inputs) - drawn.targets).norm(dim=-1).mean()
         self.optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
@@ -205,9 +202,11 @@ def sizes() -> dict[str, Json]:
     }
 
 
-def _train(name: str, config: BoardConfig, options: Json, sides: dict[str, BodyParts], file: Path, report: Report) -> Json:
+def _train(
+    name: str, config: BoardConfig, options: Json, sides: dict[str, BodyParts], file: Path, report: Report
+) -> Json:
     """Trains one network until its error on the validation people stops falling or the budget ends; writes NAME.onnx
-    with its tensors, and returns the figures.
+    and returns the figures.
     """
     training = _Training(name, config, sides["training"])
     training.resume(file.with_suffix(".checkpoint"), options, report)
@@ -218,7 +217,7 @@ def _train(name: str, config: BoardConfig, options: Json, sides: dict[str, BodyP
         if training.step % config.watch_every == 0 or training.step == config.steps:
             error = training.look(validation)
             training.save(file.with_suffix(".checkpoint"), options)
-            report(f"{file.stem}: step {training.step}, {error:.2f} cm on the validation people, {training.seconds:.0f} s")
+            report(f"{name}: step {training.step}, {error:.2f} cm on the validation people, {training.seconds:.0f} s")
     best = NETWORKS[name]()
     best.load_state_dict(training.best)
     file.with_suffix(".onnx").write_bytes(
@@ -226,7 +225,6 @@ def _train(name: str, config: BoardConfig, options: Json, sides: dict[str, BodyP
     )
     best_step, best_cm = training.curve[training.best_look]
     return {
-        "file": file.with_suffix(".onnx").name,
         "steps": training.step,
         "windows": training.step * config.batch,
         "seconds": round(training.seconds),
@@ -241,7 +239,7 @@ def folder_of(corpus: PreparedCorpus, config: BoardConfig) -> Path:
     """The folder of the stages on this motion; motion without the people of the board raises MocapError."""
     if missing := sorted({*FOLDS["board"], *config.validation} - set(corpus.people)):
         raise MocapError(f"the board needs people that are missing in this motion: {', '.join(missing)}")
-    return config.out / corpus.corpus_hash[:16]
+    return config.out / f"{corpus.corpus_hash[:16]}-{config.seed}"
 
 
 def main(corpus: PreparedCorpus, config: BoardConfig, report: Report = print) -> Path:
@@ -254,7 +252,7 @@ def main(corpus: PreparedCorpus, config: BoardConfig, report: Report = print) ->
     options = json.loads(json.dumps({"people": people, **asdict(same)}, default=str))
     sides: dict[str, BodyParts] = {}
     for name in config.networks:
-        file = folder / f"{name}-{config.seed}.json"
+        file = folder / f"{name}.json"
         own = options | {"network": name}
         budget = own | {"steps": config.steps, "patience": config.patience}
         if read_stage(file, budget, report) is not None:

@@ -10,7 +10,7 @@ from .skeleton import Body
 FRAMES = 40
 # Numbers of a rotation: its x and y axes.
 ROTATION = 6
-# Of head and hands: rotations, angular velocities, positions, velocities.
+# Rotations, angular velocities, positions and velocities of headset and hands.
 FRAME_FEATURES = 54
 # The columns of a frame with the headset's rotation and position.
 HEAD_TURN, HEAD_PLACE = slice(0, ROTATION), slice(36, 39)
