@@ -24,7 +24,6 @@ test('a panel describes the connection only while it stands, and waits for nobod
     const { connection, waiting, ended } = matchRound(ballGame, {
       play: { status, room: { ...room, responseTime: 0.008 } },
       frame,
-      players: frame.players,
       readyByItself: false,
       voices: {
         state: {
