@@ -34,6 +34,7 @@ import { readSwitches } from '../../../../src/page/shell/session/switches';
 import { Mirrors } from '../../../../src/page/studio/mirrors';
 import { allocatedPerFrame } from '../../../allocated-bytes';
 import { studyRun } from '../../activity-services';
+import { headFrame } from '../../frames';
 import { drawNowhere } from '../drawing-in-node';
 import { fake } from '../fake';
 import { expectApart, studioMenu } from '../menu-parts';
@@ -241,10 +242,8 @@ describe('in the headset', () => {
 
 /** A frame of a user who looks ahead; the left hand lies on the belly with its back towards the eyes. */
 const wearing = (height = 1.6, leftHand: TrackingFrame['leftHand'] = null): TrackingFrame => ({
-  time: 1,
-  head: { position: vec3(0, height, 0), orientation: identity, tracking: 'tracked' },
+  ...headFrame(1, height),
   leftHand,
-  rightHand: null,
 });
 
 describe('without a controller', () => {
@@ -535,8 +534,7 @@ describe('the buttons of the menu', () => {
     hands.push(hand, gaze);
     pointers.offersGaze = true;
     const frame: TrackingFrame = {
-      time: 0,
-      head: { position: vec3(0, 1.6, 0), orientation: identity, tracking: 'tracked' },
+      ...headFrame(0, 1.6),
       leftHand: { position: vec3(-0.05, 1.45, -0.35), orientation: turnedToFace, tracking: 'tracked' },
       rightHand: null,
     };
