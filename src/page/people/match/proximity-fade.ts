@@ -1,16 +1,5 @@
 import type { AvatarPose } from 'threepoint/core';
-import {
-  addScaled,
-  clamp,
-  distance,
-  dot,
-  smoothstep,
-  subtract,
-  type Transform,
-  transformPoint,
-  type Vec3,
-  vec3,
-} from 'threepoint/math';
+import { clamp, distance, smoothstep, type Transform, transformPoint, type Vec3, vec3 } from 'threepoint/math';
 
 /** Nearer to the own eyes than the first [m] another body begins to fade; at the second it is gone. */
 const fadesFrom = 0.5;
@@ -21,15 +10,16 @@ const hipsBelow = 0.62;
 const head = vec3(0, 0, 0);
 const low = vec3(0, 0, 0);
 const hand = vec3(0, 0, 0);
-const along = vec3(0, 0, 0);
-const foot = vec3(0, 0, 0);
 
 /** From a point to the line between two others [m]. */
 function distanceToLine(point: Vec3, from: Vec3, to: Vec3): number {
-  subtract(to, from, along);
-  const square = dot(along, along);
-  const share = square > 0 ? clamp(dot(subtract(point, from, foot), along) / square, 0, 1) : 0;
-  return distance(point, addScaled(from, along, share, foot));
+  const x = to.x - from.x;
+  const y = to.y - from.y;
+  const z = to.z - from.z;
+  const square = x * x + y * y + z * z;
+  const along = (point.x - from.x) * x + (point.y - from.y) * y + (point.z - from.z) * z;
+  const share = square > 0 ? clamp(along / square, 0, 1) : 0;
+  return Math.hypot(point.x - from.x - share * x, point.y - from.y - share * y, point.z - from.z - share * z);
 }
 
 /**
