@@ -1,36 +1,39 @@
+import type { Mesh } from 'three';
 import { headingOf } from 'threepoint/core';
-import { clamp, forward, type Pose, rotate, vec3, wrapAngle } from 'threepoint/math';
-import {
-  createFloatingPanel,
-  createVrPanel,
-  drawText,
-  drawTextLines,
-  fillRoundedRect,
-  vrColors,
-} from 'threepoint-ui/vr';
+import { addScaled, clamp, dampVec3, forward, type Pose, rotate, type Vec3, vec3, wrapAngle } from 'threepoint/math';
+import { showToEyesOnly } from 'threepoint/three';
+import { createVrPanel, drawText, drawTextLines, fillRoundedRect, vrColors } from 'threepoint-ui/vr';
 import { disposeTree } from '../scene/dispose-tree';
 
 const [width, height] = [900, 300];
+/** The distance of the caption, and how far it lies below the eyes [m]. */
+const [away, below] = [1.5, 0.42];
 /** The most that the caption stands to the right of where the head looks [rad]: beside the body in the mirror. */
 const aside = 0.5;
+/** The half-life with which the caption follows the head [s]: a short glance does not move it. */
+const halfLife = 0.2;
 
 /**
  * Shows the instruction and the progress of a step in the headset, always in view and beside what the user looks at. A
  * head that turns to it finds it ahead.
  */
 export class StepCaption {
+  readonly object: Mesh;
   readonly #panel = createVrPanel(width, height, 1000);
-  readonly #floating = createFloatingPanel(this.#panel, { away: 1.5, below: 0.42, halfLife: 0.2 });
   #drawn = '';
+  #place: Vec3 | null = null;
   /** The direction in which it stands, as a turn about the vertical axis [rad]. */
-  #heading: number | null = null;
+  #heading = 0;
+  #last = 0;
 
   constructor() {
+    this.object = this.#panel.mesh;
     this.object.name = 'step caption';
-  }
-
-  get object() {
-    return this.#panel.mesh;
+    this.object.renderOrder = 20;
+    this.object.visible = false;
+    showToEyesOnly(this.object);
+    const material = [this.object.material].flat()[0];
+    if (material) material.depthTest = false;
   }
 
   /** Draws the sentence, and a line such as “3 of 7 · 12 s” below it. Redraws only what changed. */
@@ -57,15 +60,21 @@ export class StepCaption {
 
   /** Places the caption before these eyes, floor frame; null: no person wears the headset. */
   show(time: number, eyes: Pose<'floor'> | null): void {
+    this.object.visible = eyes !== null;
     if (!eyes) {
-      this.#floating.hide();
-      this.#heading = null;
+      this.#place = null;
       return;
     }
     const ahead = rotate(headingOf(eyes.orientation), forward);
     const looking = Math.atan2(-ahead.x, -ahead.z);
-    const toTheRight = this.#heading === null ? aside : wrapAngle(looking - this.#heading);
+    const toTheRight = this.#place ? wrapAngle(looking - this.#heading) : aside;
     this.#heading = looking - clamp(toTheRight, 0, aside);
-    this.#floating.show(time, eyes.position, vec3(-Math.sin(this.#heading), 0, -Math.cos(this.#heading)));
+    const towards = vec3(-Math.sin(this.#heading), 0, -Math.cos(this.#heading));
+    const goal = addScaled(addScaled(eyes.position, towards, away), vec3(0, -1, 0), below);
+    this.#place = this.#place ? dampVec3(this.#place, goal, halfLife, Math.max(0, time - this.#last)) : goal;
+    this.#last = time;
+    const { x, y, z } = this.#place;
+    this.object.position.set(x, y, z);
+    this.object.lookAt(eyes.position.x, eyes.position.y, eyes.position.z);
   }
 }
