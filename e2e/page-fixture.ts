@@ -18,6 +18,13 @@ export function probe(page: Page): Promise<Probe> {
   });
 }
 
+/** Opens a file of an avatar or of a motion in the tab of avatars. */
+export async function openAvatarFile(page: Page, name: string, bytes: Uint8Array | ArrayBuffer): Promise<void> {
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  const file = { name, mimeType: 'application/octet-stream', buffer: Buffer.from(bytes as ArrayBuffer) };
+  await page.getByLabel('Open VRM, GLB or FBX').and(page.locator('input')).setInputFiles(file);
+}
+
 /** Waits until the page plays the ball game and has joined its room. */
 export async function joinedRoom(page: Page): Promise<void> {
   await page.waitForFunction(
@@ -60,6 +67,10 @@ export async function settledJoint(page: Page, name: string): Promise<Point> {
     .toBeGreaterThan(1);
   return position;
 }
+
+/** Waits until a joint is less than 1 mm from where it was. */
+export const expectJointAt = (page: Page, name: string, place: Point): Promise<void> =>
+  expect.poll(async () => 1000 * distance(await joint(page, name), place)).toBeLessThan(1);
 
 export function distance(a: Point, b: Point): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -340,9 +351,15 @@ export async function overlap(page: Page, one: string, other: string): Promise<b
 /** The state of a game that the page plays, as its probe reports it. */
 export type GameProbe<Name extends string> = Extract<Probe['game'], { readonly name: Name }>;
 
+/** Returns what the probe shows of this game; null: it is not played. */
+export async function gameOn<Name extends string>(page: Page, name: Name): Promise<GameProbe<Name> | null> {
+  const { game } = await probe(page);
+  return game?.name === name ? (game as GameProbe<Name>) : null;
+}
+
 /** Returns the ball game of a page; throws if the page plays none. */
 export async function ballMatch(page: Page): Promise<GameProbe<'ball'>> {
-  const { game } = await probe(page);
-  if (game?.name !== 'ball') throw new Error('the page plays no ball game');
+  const game = await gameOn(page, 'ball');
+  if (!game) throw new Error('the page plays no ball game');
   return game;
 }

@@ -80,7 +80,7 @@ export class Court {
     this.#shown = {
       state: ballRules.start(['a', 'b', 'c'], 1),
       time: 0,
-      attendants: [null, null, null],
+      players: [null, null, null],
       palms: [],
       me: null,
       opening: null,

@@ -1,5 +1,15 @@
 import { readdirSync, readFileSync } from 'node:fs';
-import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from '../page-fixture';
+import {
+  expect,
+  expectJointAt,
+  keepPicture,
+  open,
+  openAvatarFile,
+  openWithHeadset,
+  probe,
+  settledJoint,
+  test,
+} from '../page-fixture';
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
 
@@ -7,22 +17,9 @@ test('a VRM from a local file replaces our body, with the hands still on the con
   if (!avatarFile) throw new Error('public/avatars holds no .vrm: npx tsx tools/avatars/build/main.ts');
   await openWithHeadset(page, 'estimator=ik');
   const hand = await settledJoint(page, 'leftHand');
-  await page.getByRole('tab', { name: 'Avatar' }).click();
-  await page
-    .getByLabel('Open VRM, GLB or FBX')
-    .and(page.locator('input'))
-    .setInputFiles({
-      name: 'another-person.vrm',
-      mimeType: 'model/gltf-binary',
-      buffer: readFileSync(`public/avatars/${avatarFile}`),
-    });
+  await openAvatarFile(page, 'another-person.vrm', readFileSync(`public/avatars/${avatarFile}`));
   await expect.poll(async () => (await probe(page)).avatar.name).toMatch(/another-person/);
-  await expect
-    .poll(async () => {
-      const now = await joint(page, 'leftHand');
-      return 1000 * Math.hypot(now[0] - hand[0], now[1] - hand[1], now[2] - hand[2]);
-    })
-    .toBeLessThan(1);
+  await expectJointAt(page, 'leftHand', hand);
   await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await expect.poll(async () => (await probe(page)).avatar.name).not.toMatch(/another-person/);
 });
@@ -31,11 +28,7 @@ test('a file that is no avatar is refused in a sentence, and ours stays', async 
   complaints.allow(/holiday/);
   await openWithHeadset(page);
   const { name } = (await probe(page)).avatar;
-  await page.getByRole('tab', { name: 'Avatar' }).click();
-  await page
-    .getByLabel('Open VRM, GLB or FBX')
-    .and(page.locator('input'))
-    .setInputFiles({ name: 'holiday.vrm', mimeType: 'model/gltf-binary', buffer: Buffer.from('a picture') });
+  await openAvatarFile(page, 'holiday.vrm', Buffer.from('a picture'));
   await expect(page.getByRole('alert')).toContainText('holiday.vrm');
   expect((await probe(page)).avatar.name).toBe(name);
 });

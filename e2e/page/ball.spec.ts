@@ -7,23 +7,18 @@ import { drawSeldom } from '../draw-seldom';
 import { driveTime, goOn, holdAt } from '../driven-time';
 import { emulatedHeadset } from '../emulated-headset';
 import { freePort } from '../free-port';
-import { enterVr, expect, joinedRoom, keepPicture, open, pressReady, probe, test } from '../page-fixture';
+import { enterVr, expect, gameOn, joinedRoom, keepPicture, open, pressReady, probe, test } from '../page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 480, height: 300 } });
 
 type Page = Parameters<typeof open>[0];
 
-async function match(page: Page): Promise<BallProbe | null> {
-  const { game } = await probe(page);
-  return game?.name === 'ball' ? game : null;
-}
-
 /** Waits until the match is as asked; fails with how it is. */
 async function until(page: Page, what: (game: BallProbe) => boolean, timeout = 60_000): Promise<BallProbe> {
   let last: BallProbe | null = null;
   await expect(async () => {
-    last = await match(page);
+    last = await gameOn(page, 'ball');
     expect(last !== null && what(last), `the match: ${JSON.stringify(last)}`).toBe(true);
   }).toPass({ timeout, intervals: [100, 250, 500] });
   return last as unknown as BallProbe;
@@ -95,7 +90,7 @@ test('a spectator sees three bots and follows one of them @full', async ({ page 
   await open(page, 'play=ball&spectate&bots=on&panel=off&quality=low&estimator=ik&seconds=60');
   await driveTime(page);
   await until(page, ({ phase }) => phase === 'running');
-  expect((await match(page))?.seat).toBe(null);
+  expect((await gameOn(page, 'ball'))?.seat).toBe(null);
   await expect.poll(async () => (await probe(page)).players.length).toBe(3);
   await page.getByRole('group', { name: 'Camera' }).getByRole('button', { name: 'Kim' }).click();
   await expect(page.getByRole('button', { name: 'Kim', pressed: true })).toBeVisible();

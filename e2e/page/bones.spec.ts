@@ -1,5 +1,5 @@
 import { changed, type GltfJson } from '../../tests/threepoint/avatar/glb';
-import { expect, joint, keepPicture, load, open, probe, test } from '../page-fixture';
+import { expect, joint, keepPicture, load, open, openAvatarFile, probe, test } from '../page-fixture';
 
 test.use({ viewport: { width: 960, height: 760 } });
 
@@ -17,11 +17,8 @@ const robot = (leftHand: string): Buffer =>
     }),
   );
 
-const openRobot = async (page: Page, leftHand = 'part left knee'): Promise<void> => {
-  await page.getByRole('tab', { name: 'Avatar' }).click();
-  const file = { name: 'robot.glb', mimeType: 'model/gltf-binary', buffer: robot(leftHand) };
-  await page.getByLabel('Open VRM, GLB or FBX').and(page.locator('input')).setInputFiles(file);
-};
+const openRobot = (page: Page, leftHand = 'part left knee'): Promise<void> =>
+  openAvatarFile(page, 'robot.glb', robot(leftHand));
 
 /** Taps a bone on the picture until it is chosen: taps among bones that are close together enlarge them. */
 async function tapBone(page: Page, name: string): Promise<void> {

@@ -1,10 +1,8 @@
 import type { Page } from '@playwright/test';
 import { archeryRules } from 'threepoint-games/archery';
 import { stations } from 'threepoint-games/ball';
-import type { ArcheryProbe } from '../../src/page/archery/archery-play';
-import type { BallActivityProbe } from '../../src/page/ball/ball-activity';
 import { type EmulatedHeadset, frames, type Point } from '../emulated-headset';
-import { enterVr, expect, keepPicture, openWithHeadset, probe, freshTest as test } from '../page-fixture';
+import { enterVr, expect, gameOn, keepPicture, openWithHeadset, probe, freshTest as test } from '../page-fixture';
 import { recordCanvasText } from './hands-on-menu';
 import { inLobby, inMenu, pinchAt, pinchByEyes, pointingFrom } from './without-controllers';
 
@@ -18,15 +16,8 @@ const target = (index: number): Point => {
   return [x, y, z];
 };
 
-async function round(page: Page): Promise<ArcheryProbe | null> {
-  const { game } = await probe(page);
-  return game?.name === 'archery' ? game : null;
-}
-
-async function match(page: Page): Promise<BallActivityProbe | null> {
-  const { game } = await probe(page);
-  return game?.name === 'ball' ? game : null;
-}
+const round = (page: Page) => gameOn(page, 'archery');
+const match = (page: Page) => gameOn(page, 'ball');
 
 /** Enters VR at the mirror; records what the menu shows. */
 async function enter(page: Page): Promise<EmulatedHeadset> {

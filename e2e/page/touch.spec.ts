@@ -1,14 +1,7 @@
 import { devices, type Page } from '@playwright/test';
-import type { ArcheryProbe } from '../../src/page/archery/archery-play';
 import { drawSeldom } from '../draw-seldom';
 import { driveTime, endDrivenTime } from '../driven-time';
-import { collectErrors, expect, keepPicture, overlap, probe, freshTest as test } from '../page-fixture';
-
-/** The round of archery; null before its first frame. */
-async function archery(page: Page): Promise<ArcheryProbe | null> {
-  const { game } = await probe(page);
-  return game?.name === 'archery' ? game : null;
-}
+import { collectErrors, expect, gameOn, keepPicture, overlap, probe, freshTest as test } from '../page-fixture';
 
 /** Opens the page on a phone with this width and height [CSS pixels]. */
 async function openOnPhone(page: Page, query = ''): Promise<void> {
@@ -61,12 +54,12 @@ test.describe('on a phone', () => {
       expect(await overlap(page, '#masthead h1', '.panel-bar')).toBe(false);
       await button('Shoot by touch').tap();
       await keepPicture(page, 'touch-archery');
-      await expect.poll(async () => (await archery(page))?.arrowsLeft).toBe(5);
+      await expect.poll(async () => (await gameOn(page, 'archery'))?.arrowsLeft).toBe(5);
       await driveTime(page);
       await drag([200, 520], [205, 480]);
-      await expect.poll(async () => (await archery(page))?.draw).toBeGreaterThan(0.3);
+      await expect.poll(async () => (await gameOn(page, 'archery'))?.draw).toBeGreaterThan(0.3);
       await lift();
-      await expect.poll(async () => (await archery(page))?.arrowsLeft).toBe(4);
+      await expect.poll(async () => (await gameOn(page, 'archery'))?.arrowsLeft).toBe(4);
       await endDrivenTime(page);
 
       await button('Ball game').tap();

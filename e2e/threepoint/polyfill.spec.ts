@@ -1,22 +1,12 @@
-import { fileURLToPath } from 'node:url';
 import { expect, test } from '@playwright/test';
-import { rolldown } from 'rolldown';
-
-/** The page's script in one piece. */
-async function bundled(): Promise<string> {
-  const input = fileURLToPath(new URL('../polyfill-page.ts', import.meta.url));
-  const build = await rolldown({ input, platform: 'browser' });
-  const { output } = await build.generate({ format: 'esm', codeSplitting: false });
-  await build.close();
-  return output[0].code;
-}
+import { bundle } from '../polyfill-bundle';
 
 const length = (v: number[]): number => Math.hypot(...v);
 
 test('a page that expects the device’s body gets one from head and hands, marked as emulated @full', async ({
   page,
 }) => {
-  const code = await bundled();
+  const code = await bundle('e2e/polyfill-page.ts', 'polyfillPage');
   const html = '<!doctype html><title>Another page</title><script type="module" src="/page.js"></script>';
   await page.route('http://localhost:9/**', (route) =>
     route.request().url().endsWith('.js')

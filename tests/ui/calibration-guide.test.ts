@@ -2,20 +2,14 @@ import type { Calibration, TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import type { CalibrationStep } from '../../src/ui/calibration-dialog';
 import { createCalibrationGuide } from '../../src/ui/calibration-guide';
-
-const ahead = { x: 0, y: 0, z: 0, w: 1 };
+import { headFrame, trackedAt } from '../page/frames';
 
 /** A person of 1.6 m eye height with the hands this far forward of the eyes [m]. */
-function frameAt(time: number, reach: number): TrackingFrame {
-  const hand = (x: number) =>
-    ({ position: { x, y: 1.33, z: -reach }, orientation: ahead, tracking: 'tracked' }) as const;
-  return {
-    time,
-    head: { position: { x: 0, y: 1.6, z: 0 }, orientation: ahead, tracking: 'tracked' },
-    leftHand: hand(-0.18),
-    rightHand: hand(0.18),
-  };
-}
+const frameAt = (time: number, reach: number): TrackingFrame => ({
+  ...headFrame(time, 1.6),
+  leftHand: trackedAt(-0.18, 1.33, -reach),
+  rightHand: trackedAt(0.18, 1.33, -reach),
+});
 
 function guided({ closesItself = false } = {}) {
   const steps: (CalibrationStep | null)[] = [];

@@ -1,7 +1,6 @@
 import {
   type ClientPolicy,
   type Connection,
-  type ConnectionUpdate,
   LoopbackHost,
   type LoopbackOptions,
   type RoomView,
@@ -14,7 +13,6 @@ import { answersBallAction, applyBallEvent, predictBallAction, withMatchTime } f
 import { arenaFromSeatFloor } from './stations';
 
 export type BallConnection = Connection<BallGame>;
-export type BallConnectionUpdate = ConnectionUpdate<BallGame>;
 export type BallRoomView = RoomView<BallGame>;
 type BallLoopbackHost = LoopbackHost<BallGame>;
 

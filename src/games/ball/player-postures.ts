@@ -1,4 +1,4 @@
-import { allReleased, type HandButtons } from 'threepoint/core';
+import { allReleased, type HandButtons, recordOf, sideSign } from 'threepoint/core';
 import {
   add,
   clamp,
@@ -16,6 +16,7 @@ import {
   quat,
   right,
   type Side,
+  sides,
   slerp,
   subtract,
   type TrackedPose,
@@ -115,8 +116,6 @@ export function mixPostures(
   return target;
 }
 
-const signOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
-
 /** Directions of a hanging hand, far enough from the thigh for a ball. */
 const hangingKnuckles = normalise(vec3(0, -1, -0.25));
 const hangingThumb = { left: normalise(vec3(-0.2 * -1, 0, -1)), right: normalise(vec3(-0.2, 0, -1)) };
@@ -126,11 +125,6 @@ const nod = quat(0, 0, 0, 1);
 const drift = vec3(0, 0, 0);
 const drifted = vec3(0, 0, 0);
 
-const ofBothSides = <T>(make: (sign: -1 | 1) => T): Readonly<Record<Side, T>> => ({
-  left: make(signOf('left')),
-  right: make(signOf('right')),
-});
-
 /**
  * Building blocks for the postures of throwers and holders. Creates the postures of a body that faces −Z of its floor
  * frame.
@@ -139,8 +133,10 @@ export function createPlayerPostures({ eyeHeight, arenaFromFloor, armLength = ar
   const arm = armLength;
   const floorFromArena = invertTransform(arenaFromFloor);
   const half = (halfShoulderRatio / armRatio) * arm;
-  const fromEyes = ofBothSides((sign) => vec3(sign * half, -shoulderDropRatio * arm, shoulderBehindRatio * arm));
-  const hanging = ofBothSides((sign) => vec3(sign * 0.27 * arm, -1.01 * arm, -0.2 * arm));
+  const fromEyes = recordOf(sides, (side) =>
+    vec3(sideSign(side) * half, -shoulderDropRatio * arm, shoulderBehindRatio * arm),
+  );
+  const hanging = recordOf(sides, (side) => vec3(sideSign(side) * 0.27 * arm, -1.01 * arm, -0.2 * arm));
   const shoulder = (side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3 => add(eyes, fromEyes[side], target);
 
   function wrist(side: Side, { fist, knuckles, thumb }: Grasp): TrackedPose {

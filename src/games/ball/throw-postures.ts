@@ -1,3 +1,4 @@
+import { sideSign } from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -15,8 +16,6 @@ import {
 import { ballInPalm, wristAround } from '../fist';
 import { ballRadius } from './flight';
 import { type MutablePosture, makePosture, type PlayerPostures } from './player-postures';
-
-export const outwardOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
 export const setPalmAhead = (outward: -1 | 1, target: MutableVec3): MutableVec3 =>
   normalise(setVec3(target, outward, 0.35, 0), undefined, target);
@@ -57,14 +56,14 @@ export class ThrowPostures {
     subtract(ball, this.#postures.shoulder(side, target.eyes, shoulder), offset);
     add(normalise(offset, undefined, offset), setVec3(shoulder, 0, -0.15, -0.4), offset);
     normalise(offset, undefined, hand.knuckles);
-    setVec3(hand.thumb, -outwardOf(side), 0.25, 0);
+    setVec3(hand.thumb, -sideSign(side), 0.25, 0);
     return target;
   }
 
   /** Returns the posture with the ball before the chest and eyes on a point. */
   carrying(side: Side, at: Vec3, target: MutablePosture = makePosture()): MutablePosture {
     const { arm, eyes } = this.#postures;
-    const outward = outwardOf(side);
+    const outward = sideSign(side);
     this.resting(at, target);
     const hand = target[side];
     this.#postures.shoulder(side, eyes, hand.fist);
@@ -81,7 +80,7 @@ export class ThrowPostures {
 
   /** Writes the position at which a ball leaves the palm in this unit direction. */
   leaving(side: Side, way: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
-    wristAround(side, this.#release[side], way, setPalmAhead(outwardOf(side), offset), wrist);
+    wristAround(side, this.#release[side], way, setPalmAhead(sideSign(side), offset), wrist);
     return ballInPalm(wrist, ballRadius, target);
   }
 

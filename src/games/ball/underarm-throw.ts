@@ -1,3 +1,4 @@
+import { sideSign } from 'threepoint/core';
 import {
   add,
   addScaled,
@@ -15,7 +16,7 @@ import {
   vec3,
 } from 'threepoint/math';
 import { type MutablePosture, makePosture, type PlayerPosture, type PlayerPostures } from './player-postures';
-import { outwardOf, setPalmAhead, type ThrowPostures } from './throw-postures';
+import { setPalmAhead, type ThrowPostures } from './throw-postures';
 
 /**
  * Length of the acceleration [m], then a time at constant speed: the window in which a throw is measured, plus a slow
@@ -102,7 +103,7 @@ export class UnderarmThrow {
     const { arm, eyes } = this.#postures;
     const wound = this.#wound;
     const point = this.#point;
-    const outward = outwardOf(side);
+    const outward = sideSign(side);
     setVec3(point, 0.03 * outward, -0.01, 0.06);
     this.#lean(wound, at);
     const hand = wound[side];
@@ -124,7 +125,7 @@ export class UnderarmThrow {
   /** Computes the posture at the end: the body leans ahead. */
   #follow(side: Side, at: Vec3): void {
     const thrown = this.#thrown;
-    const outward = outwardOf(side);
+    const outward = sideSign(side);
     setVec3(this.#point, -0.02 * outward, -0.03, -0.13);
     this.#lean(thrown, at);
     const hand = thrown[side];

@@ -111,7 +111,7 @@ export class BallView {
     if (!this.#shown) return;
     const events = simulated ? happened.filter(({ type }) => type !== 'refused') : happened;
     const cues = simulated ? played.filter(({ type }) => type !== 'slipped') : played;
-    const { state, pageTime, attendants: people, me, palms, opening } = this.#shown;
+    const { state, pageTime, players: people, me, palms, opening } = this.#shown;
     for (const event of events) {
       const text = eventLine(event, people);
       if (text) this.#line = { text, until: pageTime + lineSeconds };
@@ -138,10 +138,10 @@ export class BallView {
   }
 
   /** Returns whether the basket is shown: from when its holder is there, until the end of a match that they leave. */
-  #hasBasket({ state, attendants, isThere }: BallScene): boolean {
+  #hasBasket({ state, players, isThere }: BallScene): boolean {
     const holder = state.players.findIndex(({ role }) => role === 'holder');
     if (isThere(holder)) return true;
-    return state.phase !== 'ready' && (this.#basket.object.visible || attendants[holder] === null);
+    return state.phase !== 'ready' && (this.#basket.object.visible || players[holder] === null);
   }
 
   /** Returns the line of the board: the last event, or what the match waits for. */

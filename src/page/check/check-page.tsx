@@ -91,7 +91,8 @@ async function start(): Promise<void> {
   const parts = regions();
   const { canvas, progress, result } = parts;
   const switches = readCheckSwitches(location.search);
-  const { pace, emulate, quality = affordableQuality() } = switches;
+  const { pace, emulate } = switches;
+  const quality = switches.quality ?? affordableQuality();
   const renderer = createRenderer(canvas, quality);
   const button = createEnterButton(parts.enter, () => void run());
   const show = (label: string, sentence: string | null, enabled: boolean) =>

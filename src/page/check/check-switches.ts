@@ -1,11 +1,7 @@
-import type { Quality } from '../scene/renderer';
+import { readSwitches, type Switches } from '../shell/session/switches';
 
 /** What the address of the check asks for. */
-interface CheckSwitches {
-  /** The emulated headset replaces the browser's WebXR. */
-  readonly emulate: boolean;
-  /** Absent: as the machine affords. */
-  readonly quality?: Quality;
+interface CheckSwitches extends Pick<Switches, 'emulate' | 'quality'> {
   /** The factor of all durations. */
   readonly pace: number;
   /** The problems of the address, one sentence each. */
@@ -14,20 +10,13 @@ interface CheckSwitches {
 
 const quickest = 0.05;
 
-/** Reads the query of an address. A wrong value is reported and ignored. */
+/** Reads the query of an address: the page's own switches, and the pace. A wrong value is reported and ignored. */
 export function readCheckSwitches(query: string): CheckSwitches {
-  const given = new URLSearchParams(query);
-  const complaints: string[] = [];
-  const quality = given.get('quality');
-  if (quality !== null && quality !== 'high' && quality !== 'low')
-    complaints.push(`?quality=${quality} is ignored: expected high or low.`);
-  const pace = given.get('pace') === null ? 1 : Number(given.get('pace'));
-  const known = pace >= quickest && pace <= 1;
-  if (!known) complaints.push(`?pace=${given.get('pace')} is ignored: expected a number from ${quickest} to 1.`);
-  return {
-    emulate: given.has('emulate'),
-    ...((quality === 'high' || quality === 'low') && { quality }),
-    pace: known ? pace : 1,
-    complaints,
-  };
+  const { switches, complaints } = readSwitches(query);
+  const { emulate, quality } = switches;
+  const given = new URLSearchParams(query).get('pace') ?? '1';
+  const pace = Number(given);
+  if (pace >= quickest && pace <= 1) return { emulate, quality, pace, complaints };
+  const complaint = `The address has pace=${given}: pace takes a number from ${quickest} to 1.`;
+  return { emulate, quality, pace: 1, complaints: [...complaints, complaint] };
 }

@@ -10,7 +10,6 @@ import {
 import { parseAvatar } from 'threepoint/files';
 import { forward, rotate } from 'threepoint/math';
 import { type Avatar, createAvatarBetweenFrames, GazeTargets } from 'threepoint/three';
-import { pageFolder, ServerPresence } from 'threepoint-ui';
 import type { Activity, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { Quality } from '../scene/renderer';
@@ -42,10 +41,42 @@ interface ActivityWorld extends SurroundingsHost {
   readonly gazeTargets: GazeTargets;
 }
 
-/** Enters an activity as the page does, for a user who starts no round. */
-async function openActivity(activity: Activity, options: CheckWorldsOptions): Promise<ActivityWorld> {
-  const { quality, clock, mannequin, onProblem } = options;
-  const ignore = () => undefined;
+const ignore = () => undefined;
+
+/** What the activities read of a page whose user starts no round and has no server. */
+function contextOf({ quality, clock, mannequin, onProblem }: CheckWorldsOptions) {
+  const { switches } = readSwitches('');
+  const settings = createSettings(switches, { preferences: { sound: false } }, null);
+  return {
+    quality,
+    clock,
+    settings,
+    writer: new SettingsWriter(settings, { remember: ignore }, ignore),
+    switches,
+    pointer: () => null,
+    // Rounds start as for a simulated player, so that nobody has to press Ready and bots play.
+    headset: { worn: false, emulator: null },
+    body: { calibration: defaultCalibration },
+    avatar: { isBuiltIn: true, worn: defaultAvatar },
+    fetchBuiltInAvatar: (name) => (name === defaultAvatar ? Promise.resolve(mannequin) : fetchBuiltInAvatar(name)),
+    server: { state: 'none', whenKnown: async () => 'none', refresh: async () => 'none' },
+    notices: { show: (_, text) => onProblem(text), withdraw: ignore },
+    calm: matchMedia('(prefers-reduced-motion: reduce)'),
+    study: { run: null },
+    onCaption: ignore,
+    onChange: ignore,
+    layout: { seed: layoutSeed },
+    place: null,
+    inputSource: 'headset',
+    chooseInput: ignore,
+    setSound: ignore,
+    reopen: ignore,
+    placeCamera: ignore,
+  } satisfies Omit<ActivityContext, 'stage' | 'gazeTargets'>;
+}
+
+/** Enters an activity as the page does, in a scene of its own. */
+async function openActivity(activity: Activity, context: ReturnType<typeof contextOf>): Promise<ActivityWorld> {
   const host = {
     scene: new Scene(),
     gazeTargets: new GazeTargets(),
@@ -54,44 +85,15 @@ async function openActivity(activity: Activity, options: CheckWorldsOptions): Pr
       host.surroundings = surroundings;
     },
   };
-  const { switches } = readSwitches('');
-  const settings = createSettings(switches, { preferences: { sound: false } }, null);
   const { head } = actorFrame(0, defaultCalibration);
-  const context: ActivityContext = {
-    quality,
-    clock,
-    settings,
-    writer: new SettingsWriter(settings, { remember: ignore }, ignore),
-    switches,
-    stage: {
-      studio: host,
-      view: {
-        pose: head,
-        rayThrough: () => ({ origin: head.position, direction: rotate(head.orientation, forward) }),
-      },
-    },
-    pointer: () => null,
-    // Rounds start as for a simulated player, so that nobody has to press Ready and bots play.
-    headset: { worn: false, emulator: null },
-    body: { calibration: defaultCalibration },
-    avatar: { isBuiltIn: true, worn: defaultAvatar },
-    fetchBuiltInAvatar: (name) => (name === defaultAvatar ? Promise.resolve(mannequin) : fetchBuiltInAvatar(name)),
-    server: new ServerPresence(pageFolder(), ignore),
-    notices: { show: (_, text) => onProblem(text), withdraw: ignore },
-    calm: matchMedia('(prefers-reduced-motion: reduce)'),
-    study: { run: null },
-    onCaption: ignore,
-    onChange: ignore,
-    layout: { seed: layoutSeed },
-    gazeTargets: host.gazeTargets,
-    place: null,
-    inputSource: 'headset',
-    chooseInput: ignore,
-    setSound: ignore,
-    reopen: ignore,
-    placeCamera: ignore,
+  const view = {
+    pose: head,
+    rayThrough: () => ({ origin: head.position, direction: rotate(head.orientation, forward) }),
   };
-  return Object.assign(host, { activity: await activity.load(context) });
+  const { gazeTargets } = host;
+  return Object.assign(host, {
+    activity: await activity.load({ ...context, stage: { studio: host, view }, gazeTargets }),
+  });
 }
 
 /** The worlds of the page: the mirror, and every activity of the registry. */
@@ -123,7 +125,8 @@ export class CheckWorlds {
   static async create(options: CheckWorldsOptions): Promise<CheckWorlds> {
     const avatar = await createAvatarBetweenFrames(await parseAvatar(options.mannequin, 'mannequin.vrm'));
     const opened = new Map<WorldName, ActivityWorld>();
-    for (const activity of activities) opened.set(activity.name, await openActivity(activity, options));
+    const context = contextOf(options);
+    for (const activity of activities) opened.set(activity.name, await openActivity(activity, context));
     const worlds = new CheckWorlds(options, avatar, opened);
     await worlds.#studio.openWindows();
     return worlds;

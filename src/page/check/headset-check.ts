@@ -31,34 +31,23 @@ interface HeadsetCheckOptions {
   onReport(report: HeadsetReport): void;
 }
 
-/** Speaks sentences where the browser can. Captions show them in any case. */
-class Speaker {
-  readonly #synthesis: SpeechSynthesis | null = 'speechSynthesis' in window ? window.speechSynthesis : null;
+const synthesis = 'speechSynthesis' in window ? window.speechSynthesis : null;
 
-  /** Speaks a sentence in place of the one before. */
-  say(sentence: string): void {
-    const synthesis = this.#synthesis;
-    if (!synthesis) return;
-    synthesis.cancel();
-    const utterance = new SpeechSynthesisUtterance(sentence);
-    utterance.lang = 'en';
-    synthesis.speak(utterance);
-  }
-
-  stop(): void {
-    this.#synthesis?.cancel();
-  }
+/** Speaks a sentence in place of the one before, where the browser can. Captions show it in any case. */
+function speak(sentence: string): void {
+  if (!synthesis) return;
+  synthesis.cancel();
+  const utterance = new SpeechSynthesisUtterance(sentence);
+  utterance.lang = 'en';
+  synthesis.speak(utterance);
 }
 
 /** Runs one check, from entering the session to its report. */
 export class HeadsetCheck {
   readonly #options: HeadsetCheckOptions;
-  readonly #timing: FrameTiming;
-  readonly #tracker: BodyTracker;
   readonly #measurements: Measurements;
   readonly #sequence: StepSequence;
   readonly #caption = new StepCaption();
-  readonly #speaker = new Speaker();
   readonly #camera = createHeadsetCamera();
   /** The tracking of the session; null before its first frame. */
   #tracking: TrackedSession | null = null;
@@ -69,15 +58,13 @@ export class HeadsetCheck {
 
   constructor(options: HeadsetCheckOptions) {
     this.#options = options;
-    this.#timing = options.timing;
-    this.#tracker = options.tracker;
-    this.#measurements = new Measurements(this.#tracker);
+    this.#measurements = new Measurements(options.tracker);
     this.#sequence = new StepSequence({
       remaining: () => remainingSteps(this.#measurements.deviceBodySeen),
       pace: options.pace,
       listener: {
         begin: (step) => this.#beginStep(step),
-        measure: () => this.#timing.reset(),
+        measure: () => options.timing.reset(),
         end: (step) => this.#endStep(step),
       },
     });
@@ -99,31 +86,31 @@ export class HeadsetCheck {
   }
 
   #frame(xr: XRSession, timestampMs: number, frame: XRFrame): void {
-    const { worlds, renderer } = this.#options;
+    const { worlds, renderer, tracker, timing } = this.#options;
     const startMs = performance.now();
-    const { body } = this.#tracker;
+    const { body } = tracker;
     const time = body.tick(timestampMs);
     if (Number.isNaN(this.#startedAt)) this.#startedAt = time;
     this.#time = time;
-    this.#timing.setRate(this.#rateOf(xr).rateHz);
-    this.#timing.begin(time * 1000);
-    const tracked = this.#tracker.read(frame, time);
-    this.#timing.mark('tracking');
+    timing.setRate(this.#rateOf(xr).rateHz);
+    timing.begin(time * 1000);
+    const tracked = tracker.read(frame, time);
+    timing.mark('tracking');
     const pose = body.solve(tracked);
-    this.#timing.mark('kinematics');
-    if (tracked) this.#tracker.draw(time);
-    this.#timing.mark('skinning');
+    timing.mark('kinematics');
+    if (tracked) tracker.draw(time);
+    timing.mark('skinning');
     if (tracked) worlds.update(time, tracked);
     this.#writeCaption(time);
     this.#caption.show(time, tracked?.head ?? null);
     worlds.draw(this.#camera, time);
-    this.#timing.mark('render');
-    this.#timing.end();
+    timing.mark('render');
+    timing.end();
     this.#views = Math.max(this.#views, renderer.xr.getCamera().cameras.length);
     const { predictedDisplayTime } = frame as { readonly predictedDisplayTime?: number };
     const aheadMs = predictedDisplayTime === undefined ? undefined : predictedDisplayTime - startMs;
     this.#measurements.addLatency(aheadMs, startMs - timestampMs);
-    this.#tracking = this.#tracker.tracking;
+    this.#tracking = tracker.tracking;
     if (this.#tracking) {
       const { kinds } = this.#tracking.inputs;
       this.#measurements.add({ time, tracked, pose, kinds }, this.#sequence.measured);
@@ -134,16 +121,16 @@ export class HeadsetCheck {
 
   #beginStep(step: CheckStep): void {
     const { measured, sentence } = step;
-    if (sentence !== this.#spoken) this.#speaker.say(sentence);
+    if (sentence !== this.#spoken) speak(sentence);
     this.#spoken = sentence;
     if (measured?.kind === 'frames') this.#options.worlds.show(measured.world);
-    void this.#tracker.setEstimator(measured?.kind === 'frames' ? measured.estimator : 'learned');
+    void this.#options.tracker.setEstimator(measured?.kind === 'frames' ? measured.estimator : 'learned');
     this.#options.onStep(step, this.#sequence.steps);
   }
 
   #endStep({ measured }: CheckStep): void {
     if (measured?.kind !== 'frames') return;
-    this.#measurements.addFrameTimes(measured.world, measured.estimator, this.#timing.summary());
+    this.#measurements.addFrameTimes(measured.world, measured.estimator, this.#options.timing.summary());
   }
 
   #writeCaption(time: number): void {
@@ -164,7 +151,7 @@ export class HeadsetCheck {
   async #finish(xr: XRSession, offered: OfferedFeatures): Promise<void> {
     const { renderer, emulated, onReport } = this.#options;
     renderer.setAnimationLoop(null);
-    this.#speaker.stop();
+    synthesis?.cancel();
     this.#caption.dispose();
     this.#options.worlds.show(home);
     onReport({

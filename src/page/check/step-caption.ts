@@ -2,7 +2,7 @@ import type { Mesh } from 'three';
 import { headingOf } from 'threepoint/core';
 import { addScaled, clamp, dampVec3, forward, type Pose, rotate, type Vec3, vec3, wrapAngle } from 'threepoint/math';
 import { showToEyesOnly } from 'threepoint/three';
-import { createVrPanel, fillRoundedRect, vrColors, vrFont, wrapText } from 'threepoint-ui/vr';
+import { createVrPanel, drawText, drawTextLines, fillRoundedRect, vrColors } from 'threepoint-ui/vr';
 import { disposeTree } from '../scene/dispose-tree';
 
 const [width, height] = [900, 300];
@@ -42,19 +42,13 @@ export class StepCaption {
     if (drawn === this.#drawn) return;
     this.#drawn = drawn;
     this.#panel.draw((context) => {
-      fillRoundedRect(context, [4, 4, width - 8, height - 8], 32, vrColors.glass, vrColors.line);
-      context.textBaseline = 'middle';
-      context.textAlign = 'left';
-      context.fillStyle = vrColors.ink;
-      context.font = `600 46px ${vrFont}`;
-      wrapText(context, sentence, width - 96).forEach((line, index) => {
-        context.fillText(line, 48, 66 + 56 * index);
-      });
-      context.fillStyle = vrColors.inkSoft;
-      context.font = `500 34px ${vrFont}`;
-      context.fillText(progress, 48, height - 66);
-      fillRoundedRect(context, [48, height - 34, width - 96, 10], 5, vrColors.liftMore);
-      fillRoundedRect(context, [48, height - 34, Math.max(10, (width - 96) * share), 10], 5, vrColors.accent);
+      const { glass, line, ink, inkSoft, liftMore, accent } = vrColors;
+      fillRoundedRect(context, [4, 4, width - 8, height - 8], 32, glass, line);
+      const writing = { font: '600 46px', color: ink, baseline: 'middle' } as const;
+      drawTextLines(context, sentence, [48, 66, width - 96], 56, writing);
+      drawText(context, progress, [48, height - 66], { ...writing, font: '500 34px', color: inkSoft });
+      fillRoundedRect(context, [48, height - 34, width - 96, 10], 5, liftMore);
+      fillRoundedRect(context, [48, height - 34, Math.max(10, (width - 96) * share), 10], 5, accent);
     });
   }
 

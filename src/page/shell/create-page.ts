@@ -57,7 +57,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const timing = new FrameTiming(() => performance.now());
   // Downloads start before anything is built.
   const builtInAvatar = fetchBuiltInAvatar(settings.builtInBody, (part) => loading.report('the avatar', part));
-  const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
+  const networks = createNetworkLoader({ provider: switches.ep, notices, loading });
 
   const canvas = pageElement('stage', HTMLCanvasElement);
   const quality = switches.quality ?? affordableQuality();

@@ -1,8 +1,9 @@
-import { allReleased, createPageClock, defaultCalibration } from 'threepoint/core';
+import { allReleased, createPageClock } from 'threepoint/core';
 import { vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
-import { ArcheryPlay, probeOf } from '../../../src/page/archery/archery-play';
+import { probeOf } from '../../../src/page/archery/archery-play';
 import { type Posed, posed } from '../../games/archery/bowman';
+import { archeryPage } from '../playing';
 
 const frameMs = 1000 / 72;
 
@@ -11,11 +12,7 @@ const frameMs = 1000 / 72;
  * gives them.
  */
 function range(settings: { readonly seconds?: number } = {}) {
-  const play = new ArcheryPlay(
-    defaultCalibration,
-    () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, ...settings }),
-    () => 7,
-  );
+  const play = archeryPage(settings);
   let stamp = 30_000;
   const clock = createPageClock(() => stamp);
   const said: string[] = [];

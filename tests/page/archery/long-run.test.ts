@@ -1,10 +1,10 @@
 import { createEstimator, defaultCalibration } from 'threepoint/core';
 import { expect, test } from 'vitest';
-import { ArcheryPlay } from '../../../src/page/archery/archery-play';
 import { collectGarbage } from '../../collect-garbage.mjs';
 import { isNightly } from '../../nightly';
 import { reportFigures } from '../../reliability/report-figures';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
+import { archeryPage } from '../playing';
 
 const heap = (): number => {
   collectGarbage();
@@ -15,12 +15,7 @@ const heap = (): number => {
 test('a program that plays and estimates keeps nothing of the rounds that are over', { tags: ['full'] }, () => {
   const minutes = isNightly ? 20 : 4;
   let seed = 1;
-  const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
-  const play = new ArcheryPlay(
-    defaultCalibration,
-    () => settings,
-    () => seed,
-  );
+  const play = archeryPage({}, () => seed);
   const estimator = createEstimator('ik', defaultCalibration);
   let time = 10;
   const heaps: number[] = [];

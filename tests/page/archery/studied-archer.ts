@@ -1,15 +1,11 @@
 import { defaultCalibration } from 'threepoint/core';
-import { ArcheryPlay } from '../../../src/page/archery/archery-play';
 import { createArcheryRunner } from '../../../src/page/archery/archery-runner';
 import { activityServices } from '../activity-services';
+import { archeryPage } from '../playing';
 
 /** The built-in archer, and what a study makes them play. */
 export function studiedArcher(seed: number) {
-  const play = new ArcheryPlay(
-    defaultCalibration,
-    () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true }),
-    () => seed,
-  );
+  const play = archeryPage({ startSignal: true }, () => seed);
   const archery = {
     play,
     startRound() {

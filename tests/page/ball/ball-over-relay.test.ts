@@ -12,10 +12,12 @@ import {
 } from 'threepoint/core';
 import { distance, type Vec3 } from 'threepoint/math';
 import { ballClientPolicy } from 'threepoint-games/ball';
+import type { Visitor } from 'threepoint-rooms/room';
 import { expect, onTestFinished, test } from 'vitest';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import type { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { forkServer } from '../../server/server-child';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
+import { ballPage } from '../playing';
 
 const released: Buttons = { left: allReleased, right: allReleased };
 const serverOfRounds = (seconds: number, port = 0) =>
@@ -31,14 +33,10 @@ interface Person {
 function comeIn(port: number, name: string, options: { spectate?: boolean; bots?: boolean } = {}): Person {
   const url = `http://127.0.0.1:${port}`;
   const room = 'over-relay';
-  const play = new BallPlay({
-    connect: (visitor) =>
-      new SocketConnection(ballClientPolicy, { url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
-    visitor: { name, calibration: defaultCalibration, ...(options.spectate && { spectate: true }) },
-    bots: () => options.bots ?? false,
-    readyByItself: () => !options.spectate,
-    seed: 11,
-  });
+  const { spectate, bots = false } = options;
+  const connect = (visitor: Visitor) =>
+    new SocketConnection(ballClientPolicy, { url, room, visitor, pass: createRoomPass(url, room, 'ball') });
+  const play = ballPage({ connect }, { name, spectate, bots: () => bots, readyByItself: () => !spectate, seed: 11 });
   const estimator = createEstimator('ik', defaultCalibration);
   const elbows = new Map<number, number>();
   const before = new Map<number, Vec3>();

@@ -2,8 +2,8 @@ import { allReleased, type Buttons, createEstimator, defaultCalibration, unknown
 import { distance } from 'threepoint/math';
 import { type BallEvent, type BallState, type BallSteering, createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, it } from 'vitest';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
+import { ballPage } from '../playing';
 
 /** Half of what a headset draws: every frame costs a solved body for each player. */
 const usualHz = 36;
@@ -22,19 +22,9 @@ function page(options: {
 }) {
   const { acting = true, bots = true, ball = {}, rateHz = usualHz } = options;
   const host = options.host ?? createBallLoopbackHost({ seed: 3, ball });
-  const player: BallPlay = new BallPlay({
-    connect: (visitor, time) => host.connect(visitor, time),
-    visitor: {
-      name: 'Robin',
-      calibration: defaultCalibration,
-      ...(options.seat !== undefined && { seat: options.seat }),
-      ...(options.spectate && { spectate: true }),
-    },
-    bots: () => bots,
-    readyByItself: () => acting && !options.steering?.(),
-    ...(options.steering && { steering: options.steering }),
-    seed: 7,
-  });
+  const { seat, spectate, steering = () => null } = options;
+  const readyByItself = () => acting && !steering();
+  const player = ballPage(host, { seat, spectate, bots: () => bots, readyByItself, steering, seed: 7 });
   const estimator = createEstimator('ik', defaultCalibration);
   const events: BallEvent[] = [];
   let time = 10;

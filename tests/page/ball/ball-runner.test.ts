@@ -3,11 +3,11 @@ import { type BallConnection, createBallLoopbackHost } from 'threepoint-games/ba
 import type { ConnectionStatus, Visitor } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
 import { ballTask } from '../../../src/page/ball/ball-task';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { createMatchRunner } from '../../../src/page/people/match/match-runner';
 import { trialOf } from '../../study/participant/played-trial';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
 import { activityServices } from '../activity-services';
+import { ballPage } from '../playing';
 
 type Trial = ReturnType<typeof trialOf>;
 const released: Buttons = { left: allReleased, right: allReleased };
@@ -68,13 +68,7 @@ async function group({ stopped = false } = {}) {
   let time = 10;
   const pages = await Promise.all(
     people.map(async (participant, seat) => {
-      const play = new BallPlay({
-        connect: room.connect,
-        visitor: { name: participant, calibration: defaultCalibration, seat },
-        bots: () => false,
-        readyByItself: () => false,
-        seed: 7,
-      });
+      const play = ballPage(room, { name: participant, seat, seed: 7 });
       const { settings, writer } = activityServices();
       const court = { play };
       const runner = createMatchRunner(ballTask, {

@@ -11,7 +11,7 @@ drawNowhere();
 const scene = (time: number, pageTime: number, me: number | null = null): BallScene => ({
   state: { ...ballRules.start(['a', 'b', 'c'], 1), phase: 'running', startedAt: 0 },
   time,
-  attendants: [null, null, null],
+  players: [null, null, null],
   palms: [],
   me,
   opening: null,
@@ -48,10 +48,10 @@ test('basket and name appear with the holder’s body, and the basket outlasts a
     ...{ name: 'Cal', bot: false, presence: 'here', me: false, station: 2, ready: true, opacity: 1 },
     head: vec3(0, 1.6, -5),
   };
-  const shown = (attendant: SeatFrame | null, isThere: boolean, phase: BallScene['state']['phase']) => {
+  const shown = (seated: SeatFrame | null, isThere: boolean, phase: BallScene['state']['phase']) => {
     const { state, ...rest } = scene(1, 1, 0);
-    const attendants = [null, null, attendant];
-    view.show({ ...rest, state: { ...state, phase }, attendants, isThere: (seat) => seat !== 2 || isThere });
+    const players = [null, null, seated];
+    view.show({ ...rest, state: { ...state, phase }, players, isThere: (seat) => seat !== 2 || isThere });
     const labels = court.getObjectByName('names')?.children.filter(({ visible }) => visible) ?? [];
     return { names: labels.length, basket: court.getObjectByName('basket')?.visible };
   };

@@ -2,21 +2,15 @@ import { nothingPressed } from 'threepoint/core';
 import { add, distance, type Pose, type Side, type TrackedPose, vec3 } from 'threepoint/math';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { holding, opening, shownAt, visitor } from '../../rooms/client/people';
+import { ballPage } from '../playing';
 
 type Wrists = Readonly<Record<Side, Pose<'arena'> | null>>;
 
 /** The holder's own page; how far the basket that it draws is from that of the rules [m]. */
 function holder() {
   const host = createBallLoopbackHost();
-  const play = new BallPlay({
-    connect: (visitor, time) => host.connect(visitor, time),
-    visitor: visitor('Cal', { seat: 2 }),
-    bots: () => false,
-    readyByItself: () => false,
-    seed: 1,
-  });
+  const play = ballPage(host, { name: 'Cal', seat: 2 });
   const connection = host.connect(visitor('Ann', { seat: 0 }), 10);
   let time = 10;
   return {

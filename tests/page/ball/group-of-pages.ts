@@ -1,9 +1,9 @@
 import { allReleased, type Buttons } from 'threepoint/core';
 import { ballTask } from '../../../src/page/ball/ball-task';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import type { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { createMatchRunner } from '../../../src/page/people/match/match-runner';
 import { LossyWire } from '../../rooms/client/lossy-wire';
-import { fists, holding, opening, releaseOf, shownAt, visitor } from '../../rooms/client/people';
+import { fists, holding, opening, releaseOf, shownAt } from '../../rooms/client/people';
 import { createTestRoom } from '../../rooms/room/test-room';
 import {
   type GroupPlan,
@@ -14,6 +14,7 @@ import {
 } from '../../study/model/group-sessions';
 import { trialOf } from '../../study/participant/played-trial';
 import { activityServices } from '../activity-services';
+import { ballPage } from '../playing';
 
 type Trial = ReturnType<typeof trialOf>;
 
@@ -138,13 +139,7 @@ class GroupPage {
     this.#startAt = this.#room.time + startsAfter;
     this.#wire = new LossyWire(this.#room, 100 * this.#pages, { name: this.participant, seat: this.#seat });
     const wire = this.#wire;
-    const play = new BallPlay({
-      connect: () => wire,
-      visitor: visitor(this.participant, { seat: this.#seat }),
-      bots: () => false,
-      readyByItself: () => false,
-      seed: 7,
-    });
+    const play = ballPage({ connect: () => wire }, { name: this.participant, seat: this.#seat, seed: 7 });
     this.#play = play;
     const { settings, writer } = activityServices();
     this.#runner = createMatchRunner(ballTask, {

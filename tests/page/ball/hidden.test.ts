@@ -1,21 +1,15 @@
 import { allReleased, createEstimator, defaultCalibration, unknownFingers } from 'threepoint/core';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { expect, test } from 'vitest';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { reportFigures } from '../../reliability/report-figures';
 import { poseOf } from '../../threepoint/core/estimation/drawn';
+import { ballPage } from '../playing';
 
 const released = { left: allReleased, right: allReleased };
 
 /** Returns a player in a local room. A player whose headset is off draws no frames. */
 function person(host: ReturnType<typeof createBallLoopbackHost>, name: string, seat: number) {
-  const play = new BallPlay({
-    connect: (visitor, time) => host.connect(visitor, time),
-    visitor: { name, calibration: defaultCalibration, seat },
-    bots: () => false,
-    readyByItself: () => true,
-    seed: 3,
-  });
+  const play = ballPage(host, { name, seat, readyByItself: () => true, seed: 3 });
   const estimator = createEstimator('ik', defaultCalibration);
   return {
     play,

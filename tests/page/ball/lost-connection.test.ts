@@ -1,10 +1,10 @@
 import { allReleased, type Buttons } from 'threepoint/core';
 import { addScaled, type Pose, type Side, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { LossyWire } from '../../rooms/client/lossy-wire';
-import { atRack, fists, holding, opening, shownAt, visitor } from '../../rooms/client/people';
+import { atRack, fists, holding, opening, shownAt } from '../../rooms/client/people';
 import { createTestRoom } from '../../rooms/room/test-room';
+import { ballPage } from '../playing';
 
 const trigger = (pressure: number): Buttons => ({ left: allReleased, right: { ...allReleased, trigger: pressure } });
 
@@ -12,14 +12,7 @@ const trigger = (pressure: number): Buttons => ({ left: allReleased, right: { ..
 function court() {
   const told = createTestRoom();
   let wire = new LossyWire(told);
-  const open = (line: LossyWire) =>
-    new BallPlay({
-      connect: () => line,
-      visitor: visitor('Ann'),
-      bots: () => false,
-      readyByItself: () => false,
-      seed: 1,
-    });
+  const open = (line: LossyWire) => ballPage({ connect: () => line });
   let page = open(wire);
   told.join('cal', { name: 'Cal', seat: 2 });
   for (const client of ['ann 1', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);

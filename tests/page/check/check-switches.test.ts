@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import { readCheckSwitches } from '../../../src/page/check/check-switches';
 
 test('an address without a query asks for a whole check in the headset', () => {
-  expect(readCheckSwitches('')).toEqual({ emulate: false, pace: 1, complaints: [] });
+  expect(readCheckSwitches('')).toEqual({ emulate: false, quality: null, pace: 1, complaints: [] });
 });
 
 test('emulator, quality and pace are read', () => {
@@ -17,11 +17,11 @@ test('emulator, quality and pace are read', () => {
 test.each(['0', '1.5', '-1', 'fast', '', '0.01'])('a pace of “%s” is reported and ignored', (pace) => {
   const { pace: used, complaints } = readCheckSwitches(`?pace=${pace}`);
   expect(used).toBe(1);
-  expect(complaints).toEqual([`?pace=${pace} is ignored: expected a number from 0.05 to 1.`]);
+  expect(complaints).toEqual([`The address has pace=${pace}: pace takes a number from 0.05 to 1.`]);
 });
 
 test('an unknown quality is reported and ignored', () => {
   expect(readCheckSwitches('?quality=best')).toMatchObject({
-    complaints: ['?quality=best is ignored: expected high or low.'],
+    complaints: ['The address has quality=best, which is not a valid value: quality takes high or low.'],
   });
 });

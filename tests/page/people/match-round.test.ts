@@ -3,28 +3,19 @@ import { createBallLoopbackHost } from 'threepoint-games/ball';
 import type { ConnectionStatus } from 'threepoint-rooms/room';
 import { expect, test } from 'vitest';
 import { ballGame } from '../../../src/page/ball/ball-game';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
 import { matchRound } from '../../../src/page/people/panel/match-round';
-import { visitor } from '../../rooms/client/people';
+import { ballPage } from '../playing';
 
 test('a panel describes the connection only while it stands, and waits for nobody without it', () => {
-  const host = createBallLoopbackHost();
-  const play = new BallPlay({
-    connect: (joining, time) => host.connect(joining, time),
-    visitor: visitor('Ann'),
-    bots: () => false,
-    readyByItself: () => false,
-    seed: 1,
-  });
+  const play = ballPage(createBallLoopbackHost());
   for (const time of [1, 2]) play.begin(time);
   const frame = play.follow(2, null, nothingPressed);
   const { room } = play;
-  if (!frame || !room) throw new Error('Ann is not in the room');
+  if (!frame || !room) throw new Error('Robin is not in the room');
   const described = (status: ConnectionStatus) => {
     const { connection, waiting, ended } = matchRound(ballGame, {
       play: { status, room: { ...room, responseTime: 0.008 } },
       frame,
-      players: frame.players,
       readyByItself: false,
       voices: {
         state: {

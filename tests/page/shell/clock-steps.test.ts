@@ -12,14 +12,14 @@ import {
 import { distance } from 'threepoint/math';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { ArcheryPlay, probeOf } from '../../../src/page/archery/archery-play';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { probeOf } from '../../../src/page/archery/archery-play';
 import { createFrameLoop } from '../../../src/page/shell/frame-loop';
 import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
 import { Recorder } from '../../../src/page/studio/recorder';
 import { reportFigures } from '../../reliability/report-figures';
 import { trialOf } from '../../study/participant/played-trial';
 import { studiedArcher } from '../archery/studied-archer';
+import { archeryPage, ballPage } from '../playing';
 
 const frameMs = 1000 / 72;
 /** The steps of the page's clock [s], each reverted 4 s later; the short ones run in the full suite only. */
@@ -76,11 +76,7 @@ describe.each(shorterLeaps)(name, { tags: ['full'] }, goesOn);
 
 function goesOn(step: number): void {
   test('a round of archery goes on at once, both times', () => {
-    const play = new ArcheryPlay(
-      defaultCalibration,
-      () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false }),
-      () => 7,
-    );
+    const play = archeryPage();
     const { run, leap, faults } = page({
       track: (time) => play.act(time),
       observe: (frame, buttons) => void play.follow(frame, buttons),
@@ -117,13 +113,7 @@ function goesOn(step: number): void {
 
   test('a ball game with two built-in players goes on, theirs included', () => {
     const host = createBallLoopbackHost({ seed: 5, ball: { seconds: 60 } });
-    const play = new BallPlay({
-      connect: (visitor, time) => host.connect(visitor, time),
-      visitor: { name: 'Robin', calibration: defaultCalibration },
-      bots: () => true,
-      readyByItself: () => true,
-      seed: 3,
-    });
+    const play = ballPage(host, { bots: () => true, readyByItself: () => true, seed: 3 });
     const shown = new Map<number, number>();
     let opacity = 1;
     const { run, leap, faults } = page({

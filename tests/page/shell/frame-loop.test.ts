@@ -3,12 +3,10 @@ import type { AvatarPose, TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { createFrameLoop, type FrameParts } from '../../../src/page/shell/frame-loop';
 import { FrameTiming } from '../../../src/page/shell/session/frame-timing';
+import { headFrame } from '../frames';
 
 /** A frame whose head is as high [m] as its time [s] is long. */
-const trackedAt = (time: number): TrackingFrame => ({
-  ...{ time, leftHand: null, rightHand: null },
-  head: { position: { x: 0, y: time, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
-});
+const trackedAt = (time: number) => headFrame(time, time);
 const poseOf = ({ head }: TrackingFrame): AvatarPose => ({ head, leftHand: null, rightHand: null, body: null });
 
 /** A loop and what its parts received: times and heights of heads. */

@@ -1,10 +1,10 @@
-import { createPageClock, defaultCalibration, MutablePointer } from 'threepoint/core';
+import { createPageClock, MutablePointer } from 'threepoint/core';
 import { distance, normalise, subtract, vec3 } from 'threepoint/math';
 import { landingPointOf } from 'threepoint-games/archery';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { ArcheryPlay, probeOf } from '../../../src/page/archery/archery-play';
-import { BallPlay } from '../../../src/page/ball/match/ball-play';
+import { probeOf } from '../../../src/page/archery/archery-play';
+import { archeryPage, ballPage } from '../playing';
 
 /** Seconds of a time stamp and of the page's clock, which a machine reaches that takes so long for each frame [ms]. */
 function slowPage(frameMs: number) {
@@ -25,11 +25,7 @@ function slowPage(frameMs: number) {
 describe.each([16, 200, 600])('with frames of %d ms', (frameMs) => {
   test('a mouse shoots, the arrow hits what it aims at, and a round lasts its seconds', () => {
     const page = slowPage(frameMs);
-    const play = new ArcheryPlay(
-      defaultCalibration,
-      () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, seconds: 20 }),
-      () => 7,
-    );
+    const play = archeryPage({ seconds: 20 });
     const mouse = new MutablePointer('mouse');
     const eyes = vec3(0, 1.6, 0);
     const aimed = play.targets[1]!;
@@ -65,13 +61,7 @@ describe.each([16, 200, 600])('with frames of %d ms', (frameMs) => {
   test('a match of the ball game lasts its seconds, and balls that built-in players throw score', () => {
     const page = slowPage(frameMs);
     const host = createBallLoopbackHost({ seed: 5, ball: { seconds: 60 } });
-    const play = new BallPlay({
-      connect: (visitor, time) => host.connect(visitor, time),
-      visitor: { name: 'Robin', calibration: defaultCalibration },
-      bots: () => true,
-      readyByItself: () => true,
-      seed: 3,
-    });
+    const play = ballPage(host, { bots: () => true, readyByItself: () => true, seed: 3 });
     const step = () => {
       const time = page.next();
       play.begin(time);

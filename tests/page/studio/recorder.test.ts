@@ -1,18 +1,12 @@
 import type { TrackingFrame } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { Recorder } from '../../../src/page/studio/recorder';
+import { headFrame, trackedAt } from '../frames';
 
 const source = { device: 'emulated headset', rateHz: 72, calibration: { eyeHeight: 1.6, armSpan: 1.4 } };
 
 /** A head that goes right at one metre per second. */
-function frameAt(time: number): TrackingFrame {
-  return {
-    time,
-    head: { position: { x: time, y: 1.6, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
-    leftHand: null,
-    rightHand: null,
-  };
-}
+const frameAt = (time: number): TrackingFrame => ({ ...headFrame(time, 1.6), head: trackedAt(time, 1.6, 0) });
 
 function recorded(from: number, to: number) {
   const recorder = new Recorder();

@@ -22,20 +22,14 @@ import {
   type TimedLaunch,
 } from 'threepoint-games/ball';
 import type { DisplayedPlayer } from '../../people/view/displayed-match';
-import {
-  createSoundStage,
-  type Recipe,
-  type Recipes,
-  type SoundPlayer,
-  type SoundStage,
-} from '../../scene/sound/sound-stage';
+import { createSoundStage, type Recipe, type Recipes, type SoundPlayer } from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/sound-synthesis';
 import type { Palms } from '../match/ball-frame';
 import { cueCaption, eventCaption, type Listener } from './ball-captions';
 import { bounce, caughtInWicker, knock, tick, whistle } from './ball-synthesis';
 
 /** One frame of a match for the ears. */
-export interface SoundFrame {
+interface SoundFrame {
   readonly state: BallState;
   readonly events: readonly BallEvent[];
   readonly cues: readonly BallCue[];
@@ -63,7 +57,7 @@ const boardAt = vec3(0, 3, -6);
 const headOfStation = (station: number): Vec3 => add((stations[station] ?? stations[0]!).position, vec3(0, 1.4, 0));
 
 /** Returns the position of an event's sound, arena frame; null: it has no position. */
-export function soundPosition(event: BallEvent, state: BallState): Vec3 | null {
+function soundPosition(event: BallEvent, state: BallState): Vec3 | null {
   switch (event.type) {
     case 'thrown':
     case 'bounced':
@@ -89,7 +83,7 @@ export function soundPosition(event: BallEvent, state: BallState): Vec3 | null {
 export class BallSounds {
   readonly #onCaption: (text: string) => void;
   /** The stage that plays the sounds. It must be unlocked; captions work without it. */
-  readonly stage: SoundStage;
+  readonly stage = createSoundStage(recipes);
   #floorFromArena: Transform<'floor', 'arena'> = {
     position: vec3(0, 0, 0),
     orientation: { x: 0, y: 0, z: 0, w: 1 },
@@ -98,9 +92,8 @@ export class BallSounds {
   /** The second before the bell that ticked last; 0: none did. */
   #ticked = 0;
 
-  constructor(onCaption: (text: string) => void, createContext?: () => AudioContext) {
+  constructor(onCaption: (text: string) => void) {
     this.#onCaption = onCaption;
-    this.stage = createSoundStage(recipes, createContext);
   }
 
   playEvents(played: SoundFrame): void {

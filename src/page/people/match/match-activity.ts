@@ -24,14 +24,13 @@ import type { Surroundings } from '../../scene/surroundings';
 import { PeopleMenu } from '../menu/people-menu';
 import { createMatchPanel } from '../panel/match-panel';
 import { type MatchRound, matchRound } from '../panel/match-round';
-import { ownName } from '../view/displayed-match';
 import { type LobbyButton, seatOfButton } from '../view/lobby-sheet';
 import type { PeopleScene, PeopleView } from '../view/people-view';
 import { seatLooks } from '../view/seat-looks';
 import { BlockList } from '../voices/block-list';
 import { Voices } from '../voices/voices';
 import { MatchCamera, type MatchScenes } from './match-camera';
-import type { MatchFrame, SeatFrame } from './match-frame';
+import type { MatchFrame } from './match-frame';
 import type { MatchPlay, MatchPlayOptions } from './match-play';
 import { createOtherBodies } from './other-bodies';
 import { type PlayRoom, roomFor } from './play-room';
@@ -106,10 +105,6 @@ export abstract class MatchActivity<
   readonly #menu: PeopleMenu;
   /** The width up to which the bar lies over the picture. */
   readonly #phone = matchMedia('(max-width: 480px)');
-  /** The user joined without a name, and reads “You” instead of the one that others see. */
-  readonly #unnamed: boolean;
-  /** The result of `#named`; the next call overwrites it. */
-  readonly #written: (SeatFrame | null)[] = [];
   #placedAt: Transform<'floor', 'arena'> | null = null;
   #newestFrame: TrackingFrame | null = null;
   /** The number of voided matches that the user was notified of. */
@@ -123,7 +118,6 @@ export abstract class MatchActivity<
     this.context = context;
     this.game = game;
     this.#parts = parts;
-    this.#unnamed = place === null && settings.name === '';
     this.readyByItself = () => !room.shared && acting();
     this.play = parts.createPlay({
       connect: room.connect,
@@ -133,6 +127,7 @@ export abstract class MatchActivity<
         ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },
+      unnamed: place === null && settings.name === '',
       readyByItself: this.readyByItself,
     });
     const { play } = this;
@@ -211,7 +206,6 @@ export abstract class MatchActivity<
     view.showBoards?.(headset.worn || !this.#phone.matches);
     view.show({
       ...newest,
-      attendants: this.#named(newest.players),
       head: (this.camera.spectating ? null : (frame ?? this.#newestFrame)?.head) ?? stage.view.pose,
       pageTime: time,
       inRoom: this.#joined,
@@ -273,13 +267,7 @@ export abstract class MatchActivity<
     const frame = this.play.newest;
     if (!frame) return null;
     const { game, play, voices } = this;
-    return matchRound(game, {
-      play,
-      frame,
-      players: this.#named(frame.players),
-      readyByItself: this.readyByItself(),
-      voices,
-    });
+    return matchRound(game, { play, frame, readyByItself: this.readyByItself(), voices });
   }
 
   players(): readonly PlayerProbe[] {
@@ -314,17 +302,6 @@ export abstract class MatchActivity<
     if (at === this.#placedAt) return;
     this.#placedAt = at;
     this.context.stage.studio.setSurroundings(this.#parts.view.placed(at));
-  }
-
-  /** The players with the names that this page shows; the list is valid until the next call. */
-  #named(players: MatchFrame['players']): MatchFrame['players'] {
-    if (!this.#unnamed) return players;
-    const written = this.#written;
-    written.length = players.length;
-    players.forEach((player, i) => {
-      written[i] = player?.me ? { ...player, name: ownName } : player;
-    });
-    return written;
   }
 
   #press(id: LobbyButton): void {

@@ -1,6 +1,7 @@
 import type { Buttons, Calibration, HapticPulse, TrackingFrame } from 'threepoint/core';
 import { RoomClient } from 'threepoint-rooms';
 import type { Connection, ConnectionUpdate, HostedGame, Visitor } from 'threepoint-rooms/room';
+import { ownName } from '../view/displayed-match';
 import type { MatchFrame } from './match-frame';
 import type { SeatedGame } from './seated-game';
 import { SeatedPeople } from './seated-people';
@@ -8,6 +9,8 @@ import { SeatedPeople } from './seated-people';
 export interface MatchPlayOptions<Game extends HostedGame> {
   connect(visitor: Visitor, time: number): Connection<Game>;
   readonly visitor: Visitor;
+  /** The user joined without a name, and reads “You” instead of the one that others see. */
+  readonly unnamed?: boolean;
   /** Whether this player is ready without being asked: a simulated one in a room of this page. */
   readyByItself(): boolean;
 }
@@ -38,7 +41,7 @@ export abstract class MatchPlay<
     super((time) => options.connect(options.visitor, time));
     this.#game = game;
     this.#options = options;
-    this.seated = new SeatedPeople(game);
+    this.seated = new SeatedPeople(game, options.unnamed ? ownName : null);
   }
 
   /** Plays the hands of a frame: sends the actions of their gestures. Returns haptic pulses. */

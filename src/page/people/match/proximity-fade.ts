@@ -1,5 +1,5 @@
 import type { AvatarPose } from 'threepoint/core';
-import { clamp, smoothstep, type Transform, transformPoint, type Vec3, vec3 } from 'threepoint/math';
+import { clamp, distance, smoothstep, type Transform, transformPoint, type Vec3, vec3 } from 'threepoint/math';
 
 /** Nearer to the own eyes than the first [m] another body begins to fade; at the second it is gone. */
 const fadesFrom = 0.5;
@@ -37,11 +37,11 @@ export function proximityFade(eyes: Vec3, pose: AvatarPose, placement: Transform
   let nearest = distanceToLine(eyes, head, low);
   if (pose.leftHand) {
     transformPoint(placement, pose.leftHand.position, hand);
-    nearest = Math.min(nearest, distanceToLine(eyes, hand, hand));
+    nearest = Math.min(nearest, distance(eyes, hand));
   }
   if (pose.rightHand) {
     transformPoint(placement, pose.rightHand.position, hand);
-    nearest = Math.min(nearest, distanceToLine(eyes, hand, hand));
+    nearest = Math.min(nearest, distance(eyes, hand));
   }
   return smoothstep(goneAt, fadesFrom, nearest);
 }

@@ -28,10 +28,13 @@ export class SeatedPeople<Game extends HostedGame> {
   /** Head and hands by seat; null: not visible now. */
   readonly poses: (PlayerPose | null)[] = [];
   readonly #game: Pick<SeatedGame<Game>, 'stationOf'>;
+  readonly #ownName: string | null;
   readonly #views: SeatView[] = [];
 
-  constructor(game: Pick<SeatedGame<Game>, 'stationOf'>) {
+  /** `ownName`: the displayed name of the user; null: the one that others see. */
+  constructor(game: Pick<SeatedGame<Game>, 'stationOf'>, ownName: string | null) {
     this.#game = game;
+    this.#ownName = ownName;
   }
 
   /** Updates all people. `frame`: the user's hands, null if nothing is tracked. */
@@ -64,10 +67,10 @@ export class SeatedPeople<Game extends HostedGame> {
       }
       if (!player) continue;
       const entry = view.player;
-      entry.name = row.name;
       entry.bot = row.bot;
       entry.presence = row.presence;
       entry.me = seat === mySeat;
+      entry.name = (entry.me && this.#ownName) || row.name;
       entry.station = station;
       entry.ready = player.ready;
       entry.head = pose && transformPoint(connection.arenaFromFloor(seat), pose.head.position, view.head);

@@ -1,94 +1,42 @@
-import type { RoomClient } from 'threepoint-rooms';
-import type { HostedGame } from 'threepoint-rooms/room';
 import { linkTo, qrCode } from 'threepoint-ui';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { ActivityMenu, MenuEntry } from '../../activity/activity-menu';
-import type { SeatedGame } from '../match/seated-game';
+import { type ControlledMatch, sharedRoom } from '../panel/match-controls';
 import type { MatchRound } from '../panel/match-round';
 import { type OtherPlayer, otherPlayers } from '../panel/other-players';
-import type { BlockList } from '../voices/block-list';
 import type { Voices } from '../voices/voices';
-import { consentText, type VoicesState } from '../voices/voices-state';
+import { consentText } from '../voices/voices-state';
 import { invitationSheet, type ShownInvitation } from './invitation-sheet';
 import { playersSheet } from './players-sheet';
 
-export interface PeopleMenuState {
-  /** Before and after a match, whether the user is ready; null: the user is not asked. */
-  readonly ready: boolean | null;
-  readonly plainOthers: boolean;
-  readonly others: readonly OtherPlayer[];
-  /** Other people can join this room. */
-  readonly canInvite: boolean;
-  readonly voices: Pick<VoicesState, 'phase' | 'muted' | 'microphoneMissing'>;
-}
-
-export interface PeopleMenuActions {
-  ready(on: boolean): void;
-  setPlainOthers(on: boolean): void;
-  listOthers(): void;
-  invite(): void;
-  /** Shows or hides the consent text of voices. */
-  askVoices(on: boolean): void;
-  joinVoices(): void;
-  mute(on: boolean): void;
-}
-
-function voiceEntries(
-  { voices: { phase, muted, microphoneMissing } }: PeopleMenuState,
-  actions: PeopleMenuActions,
-): MenuEntry[] {
+function voiceEntries(voices: Voices): MenuEntry[] {
+  const { phase, muted, microphoneMissing } = voices.state;
   switch (phase) {
     case 'off':
-      return [{ id: 'voices', label: 'Talk', act: () => actions.askVoices(true) }];
+      return [{ id: 'voices', label: 'Talk', act: () => voices.ask(true) }];
     case 'asked':
       return [
-        { id: 'voices', label: 'Join, muted', act: () => actions.joinVoices() },
-        { id: 'no-voices', label: 'Not now', act: () => actions.askVoices(false) },
+        { id: 'voices', label: 'Join, muted', act: () => void voices.join() },
+        { id: 'no-voices', label: 'Not now', act: () => voices.ask(false) },
       ];
     case 'in': {
       const label = microphoneMissing ? 'No microphone' : muted ? 'Unmute me' : 'Mute me';
-      return [{ id: 'voices', label, act: () => actions.mute(!muted) }];
+      return [{ id: 'voices', label, act: () => void voices.setMuted(!muted) }];
     }
     default:
       return [];
   }
 }
 
-/** Returns a match's buttons of the menu in the headset. */
-export function peopleEntries(state: PeopleMenuState, actions: PeopleMenuActions): readonly MenuEntry[] {
-  const { ready, plainOthers, others, canInvite, voices } = state;
-  const entries: MenuEntry[] = [];
-  if (ready !== null)
-    entries.push({ id: 'ready', label: ready ? 'Wait for me' : 'Ready', act: () => actions.ready(!ready) });
-  // The user reads the consent text first: there is nothing else to press.
-  if (voices.phase !== 'asked') {
-    const label = `Others: ${plainOthers ? 'plain' : 'as worn'}`;
-    entries.push({ id: 'others', label, act: () => actions.setPlainOthers(!plainOthers) });
-    if (others.length > 0) entries.push({ id: 'players', label: 'Players', act: () => actions.listOthers() });
-    if (canInvite) entries.push({ id: 'invite', label: 'Invite', act: () => actions.invite() });
-  }
-  return [...entries, ...voiceEntries(state, actions)];
-}
-
-/** What the menu shows and acts on. */
-export interface MenuMatch {
-  readonly game: Pick<SeatedGame<HostedGame>, 'name'>;
-  readonly play: Pick<RoomClient<HostedGame>, 'connection'>;
-  readonly voices: Voices;
-  readonly blocked: BlockList;
-  round(): MatchRound | null;
-  banner(): string | null;
-}
-
 /** A match's part of the menu in the headset. */
 export class PeopleMenu {
-  readonly #match: MenuMatch;
+  readonly #match: ControlledMatch;
   readonly #context: ActivityContext;
   #invitation: ShownInvitation | null = null;
   /** The list of players replaces the menu. */
   #listed = false;
 
-  constructor(match: MenuMatch, context: ActivityContext) {
+  constructor(match: ControlledMatch, context: ActivityContext) {
     this.#match = match;
     this.#context = context;
   }
@@ -100,34 +48,41 @@ export class PeopleMenu {
   }
 
   state(): ActivityMenu {
-    const { settings } = this.#context;
     const match = this.#match;
     const round = match.round();
-    const { phase, muted, microphoneMissing, message } = match.voices.state;
-    const isAsked = round !== null && round.ended === null && round.seat !== null && round.phase !== 'running';
-    const others = round ? otherPlayers(round, phase === 'in') : [];
-    const canInvite = this.#openRoom() !== null;
-    const state: PeopleMenuState = {
-      ready: isAsked ? round.ready : null,
-      plainOthers: settings.plainOthers,
-      others,
-      canInvite,
-      voices: { phase, muted, microphoneMissing },
-    };
+    const { phase, message } = match.voices.state;
+    const others = round && otherPlayers(round, phase === 'in');
     return {
-      entries: peopleEntries(state, this.#actions()),
-      sheet: this.#sheet(canInvite, round === null ? null : others),
+      entries: this.#entries(round, others),
+      sheet: this.#sheet(others),
       notice: (phase === 'asked' ? consentText : message) ?? match.banner(),
       hint: round?.waiting ?? round?.connection ?? null,
     };
   }
 
-  #sheet(canInvite: boolean, others: readonly OtherPlayer[] | null): ActivityMenu['sheet'] {
-    const close = () =>
-      this.#change(() => {
-        this.close();
-      });
-    if (canInvite && this.#invitation) return invitationSheet(this.#invitation, close);
+  #entries(round: MatchRound | null, others: readonly OtherPlayer[] | null): readonly MenuEntry[] {
+    const { play, voices } = this.#match;
+    const { settings, writer } = this.#context;
+    const entries: MenuEntry[] = [];
+    if (round && round.ended === null && round.seat !== null && round.phase !== 'running') {
+      const { ready } = round;
+      const label = ready ? 'Wait for me' : 'Ready';
+      entries.push({ id: 'ready', label, act: () => play.connection?.setReady(!ready) });
+    }
+    // The user reads the consent text first: there is nothing else to press.
+    if (voices.state.phase !== 'asked') {
+      const { plainOthers } = settings;
+      const label = `Others: ${plainOthers ? 'plain' : 'as worn'}`;
+      entries.push({ id: 'others', label, act: () => writer.keep({ plainOthers: !plainOthers }) });
+      if (others && others.length > 0) entries.push({ id: 'players', label: 'Players', act: () => this.#list() });
+      if (sharedRoom(this.#context)) entries.push({ id: 'invite', label: 'Invite', act: () => this.#invite() });
+    }
+    return [...entries, ...voiceEntries(voices)];
+  }
+
+  #sheet(others: readonly OtherPlayer[] | null): ActivityMenu['sheet'] {
+    const close = () => this.#change(() => this.close());
+    if (this.#invitation && sharedRoom(this.#context)) return invitationSheet(this.#invitation, close);
     if (!this.#listed || others === null) return null;
     const { blocked } = this.#match;
     return playersSheet(others, {
@@ -137,27 +92,10 @@ export class PeopleMenu {
     });
   }
 
-  #actions(): PeopleMenuActions {
-    const { writer } = this.#context;
-    const { play, voices } = this.#match;
-    return {
-      ready: (on) => play.connection?.setReady(on),
-      setPlainOthers: (plainOthers) => writer.keep({ plainOthers }),
-      listOthers: () =>
-        this.#change(() => {
-          this.#listed = true;
-        }),
-      invite: () => this.#invite(),
-      askVoices: (on) => voices.ask(on),
-      joinVoices: () => void voices.join(),
-      mute: (on) => void voices.setMuted(on),
-    };
-  }
-
-  /** The room that other people can join; null: it is in this page. */
-  #openRoom(): string | null {
-    const { switches, server } = this.#context;
-    return server.state === 'none' ? null : switches.room;
+  #list(): void {
+    this.#change(() => {
+      this.#listed = true;
+    });
   }
 
   /** Shows the effect of a press at once, not with the next periodic update. */
@@ -167,7 +105,7 @@ export class PeopleMenu {
   }
 
   #invite(): void {
-    const room = this.#openRoom();
+    const room = sharedRoom(this.#context);
     if (room === null) return;
     const link = linkTo(this.#match.game.name, room);
     const show = (code: ShownInvitation['code']) =>

@@ -8,6 +8,7 @@ import {
   type MenuSheet,
   menuMargin,
 } from '../../activity/activity-menu';
+import type { MatchBarActions } from '../panel/match-controls';
 import { hideLabel, muteLabel, type OtherPlayer } from '../panel/other-players';
 import { paintSeatMark } from '../view/seat-looks';
 
@@ -18,11 +19,7 @@ export const playerHeight = 252;
 const buttonsTop = 104;
 const buttonsHeight = 88;
 
-export interface PlayersSheetActions {
-  /** Stops or resumes playing the voice of a player. */
-  silence(seat: number, on: boolean): void;
-  /** Hides a player and their voice, or shows them again. */
-  hide(seat: number, on: boolean): void;
+export interface PlayersSheetActions extends Pick<MatchBarActions['voices'], 'silence' | 'hide'> {
   close(): void;
 }
 

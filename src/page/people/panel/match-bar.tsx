@@ -2,52 +2,10 @@ import type { HostedGame } from 'threepoint-rooms/room';
 import { isTouchFirst, RoomLinkCard, type ServerState } from 'threepoint-ui';
 import { Button, Group, Sentences, Toggle, TypedInput } from 'threepoint-ui/controls';
 import type { SeatedGame } from '../match/seated-game';
+import type { MatchBarActions, MatchBarState } from './match-controls';
 import type { MatchRound } from './match-round';
 import { otherPlayers } from './other-players';
-import { VoicesBar, type VoicesBarActions } from './voices-bar';
-
-/** A match as the bar shows it. */
-export interface MatchBarState {
-  /** null: not in the room yet. */
-  readonly round: MatchRound | null;
-  /** null: in this page alone. */
-  readonly room: string | null;
-  /** The state of the server, which hosts shared rooms. */
-  readonly server: ServerState;
-  readonly bots: boolean;
-  readonly sound: boolean;
-  /** The user is ready without being asked. */
-  readonly readyByItself: boolean;
-  /** The mouse moves the user's body; null: it cannot, because a headset is worn or an emulated one is steered. */
-  readonly mouse: boolean | null;
-  readonly name: string;
-  /** The name that others see if the player gave none. */
-  readonly defaultName: string;
-  /** The seat that a spectator's camera follows; null: the camera is free. */
-  readonly following: number | null;
-}
-
-export interface MatchBarActions {
-  ready(on: boolean): void;
-  setOption(on: boolean): void;
-  sit(seat: number | null): void;
-  setBots(on: boolean): void;
-  setSound(on: boolean): void;
-  setName(name: string): void;
-  /** Opens a room that other people can join. */
-  openRoom(): void;
-  /** Asks for the server again. */
-  askServer(): void;
-  /** Shows the invitation to this room. */
-  invite(): void;
-  /** Rejoins the room that this page is no longer in. */
-  rejoin(): void;
-  /** The camera of a spectator: with a player, or null: free. */
-  follow(seat: number | null): void;
-  /** Lets the mouse or the simulated player move the user's body. */
-  steer(on: boolean): void;
-  readonly voices: VoicesBarActions;
-}
+import { VoicesBar } from './voices-bar';
 
 interface MatchBarProps {
   readonly game: Pick<SeatedGame<HostedGame>, 'name' | 'roles' | 'bots' | 'rules' | 'option'>;

@@ -42,8 +42,6 @@ export interface MatchRound {
 export interface MatchRoundParts<Game extends HostedGame> {
   readonly play: Pick<RoomClient<Game>, 'status' | 'room'>;
   readonly frame: MatchFrame<Game>;
-  /** The players with the names that this page shows. */
-  readonly players: MatchFrame['players'];
   /** The user is ready without being asked. */
   readonly readyByItself: boolean;
   readonly voices: { readonly state: VoicesState; readonly seats: { voiceOf(seat: number): PersonVoice } };
@@ -52,9 +50,9 @@ export interface MatchRoundParts<Game extends HostedGame> {
 /** Summarises a frame of a match. */
 export function matchRound<Game extends HostedGame>(
   game: SeatedGame<Game>,
-  { play, frame, players, readyByItself, voices }: MatchRoundParts<Game>,
+  { play, frame, readyByItself, voices }: MatchRoundParts<Game>,
 ): MatchRound {
-  const { state, secondsLeft, me, spectators, paused } = frame;
+  const { state, secondsLeft, me, players, spectators, paused } = frame;
   const { phase } = play.status;
   const ended = phase === 'ended';
   // Without a connection the state is outdated, and the banner says so.

@@ -13,16 +13,10 @@ export interface SeatRow extends PersonVoice {
 }
 
 /** Another player of the room as lists show them, at the desk and in the headset alike. */
-export interface OtherPlayer {
-  readonly seat: number;
+export interface OtherPlayer extends SeatRow {
   readonly name: string;
-  readonly station: number;
-  readonly label: string;
-  readonly role: string;
   /** The state of their voice in words; empty: nothing to show. */
   readonly status: string;
-  readonly silenced: boolean;
-  readonly hidden: boolean;
   /** none: the player has no voice to mute. off: the player is hidden, which mutes the voice too. */
   readonly muting: 'offered' | 'off' | 'none';
 }
@@ -45,11 +39,11 @@ export const otherPlayers = (
   inVoices: boolean,
 ): readonly OtherPlayer[] =>
   people.flatMap((person): OtherPlayer[] => {
-    const { seat, name, station, label, role, voice, silenced, hidden } = person;
+    const { seat, name, voice, hidden } = person;
     if (name === null || seat === own) return [];
     const status = hidden ? 'hidden' : inVoices ? voiceText(person) : '';
     const muting = !inVoices || voice === 'none' ? 'none' : hidden ? 'off' : 'offered';
-    return [{ seat, name, station, label, role, status, silenced, hidden, muting }];
+    return [{ ...person, name, status, muting }];
   });
 
 /** The labels of the buttons that mute and hide a player. */

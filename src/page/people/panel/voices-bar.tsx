@@ -1,20 +1,8 @@
 import { Button, Group, Toggle } from 'threepoint-ui/controls';
 import { seatLooks } from '../view/seat-looks';
 import { consentText, type VoicesState } from '../voices/voices-state';
+import type { MatchBarActions } from './match-controls';
 import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type SeatRow } from './other-players';
-
-export interface VoicesBarActions {
-  /** Shows or hides the consent text of voices. */
-  ask(on: boolean): void;
-  join(): void;
-  leave(): void;
-  mute(on: boolean): void;
-  relayOnly(on: boolean): void;
-  /** Stops or resumes playing the voice of a player. */
-  silence(seat: number, on: boolean): void;
-  /** Hides a player and their voice, or shows them again. */
-  hide(seat: number, on: boolean): void;
-}
 
 /** The mark of a station in its colour. */
 function SeatMark({ station }: Pick<OtherPlayer, 'station'>) {
@@ -28,7 +16,7 @@ function SeatMark({ station }: Pick<OtherPlayer, 'station'>) {
 
 interface PersonProps {
   readonly player: OtherPlayer;
-  readonly actions: VoicesBarActions;
+  readonly actions: MatchBarActions['voices'];
 }
 
 /** Another player, with the buttons that mute and hide them. */
@@ -58,7 +46,7 @@ const Person = ({ player, actions }: PersonProps) => (
 
 interface VoicesProps {
   readonly state: VoicesState;
-  readonly actions: VoicesBarActions;
+  readonly actions: MatchBarActions['voices'];
 }
 
 /** The consent text with the buttons that join or decline. */

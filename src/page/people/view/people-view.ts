@@ -10,9 +10,8 @@ import { LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
 
 /** One frame of a match as people are shown in it. */
-export interface PeopleScene<Game extends HostedGame> extends Pick<MatchFrame<Game>, 'state' | 'secondsLeft' | 'me'> {
-  /** By player; null: the seat is free. */
-  readonly attendants: readonly (SeatFrame | null)[];
+export interface PeopleScene<Game extends HostedGame>
+  extends Pick<MatchFrame<Game>, 'state' | 'secondsLeft' | 'me' | 'players'> {
   /** The page's time [s], and whether it is connected to the room. */
   readonly pageTime: number;
   readonly inRoom: boolean;
@@ -26,13 +25,13 @@ export interface PeopleScene<Game extends HostedGame> extends Pick<MatchFrame<Ga
 }
 
 /** Picks what labels show of a player; a label is redrawn when any of it changes. */
-const writtenOf = (attendant: SeatFrame | null): DisplayedPlayer | null =>
-  attendant && {
-    name: attendant.name,
-    bot: attendant.bot,
-    presence: attendant.presence,
-    me: attendant.me,
-    station: attendant.station,
+const writtenOf = (player: SeatFrame | null): DisplayedPlayer | null =>
+  player && {
+    name: player.name,
+    bot: player.bot,
+    presence: player.presence,
+    me: player.me,
+    station: player.station,
   };
 
 /** The lobby in front of the user, and the names over the heads of the others. */
@@ -52,8 +51,8 @@ export class PeopleView<Game extends HostedGame> {
 
   /** Shows a frame to eyes at this height [m]. Returns the match as boards show it. */
   show(scene: PeopleScene<Game>, eyeHeight: number): DisplayedMatch<Game['state']> {
-    const { state, attendants, me, readyByItself } = scene;
-    const players = attendants.map(writtenOf);
+    const { state, me, readyByItself } = scene;
+    const players = scene.players.map(writtenOf);
     const match = { state, seconds: Math.ceil(scene.secondsLeft), players, me, readyByItself };
     this.lobby.show(match, eyeHeight, scene.pageTime, scene.inRoom);
     this.#showNames(scene, players);
@@ -66,15 +65,15 @@ export class PeopleView<Game extends HostedGame> {
   }
 
   #showNames(
-    { attendants, voices, hidden, isThere }: PeopleScene<Game>,
+    { players, voices, hidden, isThere }: PeopleScene<Game>,
     people: readonly (DisplayedPlayer | null)[],
   ): void {
     this.#names.show(
-      attendants.map((attendant, player) => {
-        const person = people[player];
-        if (!attendant?.head || !person || person.me || hidden.has(player) || !isThere(player)) return null;
-        const { head, opacity } = attendant;
-        return { person, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };
+      players.map((player, seat) => {
+        const person = people[seat];
+        if (!player?.head || !person || person.me || hidden.has(seat) || !isThere(seat)) return null;
+        const { head, opacity } = player;
+        return { person, head, opacity, voice: voices.markOf(seat), level: voices.levelOf(seat) };
       }),
     );
   }

@@ -9,7 +9,7 @@ const downloadShare = 0.9;
 
 /** Loads networks by name. The download of the runtime starts at once. */
 export function createNetworkLoader(options: {
-  readonly provider: Switches['executionProvider'];
+  readonly provider: Switches['ep'];
   readonly notices: Pick<Notices, 'show'>;
   readonly loading: Pick<PageLoading, 'report'>;
 }): BodySolverOptions['networks'] {

@@ -1,5 +1,4 @@
 import type { Calibration, TrackingFrame } from 'threepoint/core';
-import { type TrackedPose, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { createActor } from '../../../../src/page/emulator/actor';
 import type { Emulator } from '../../../../src/page/emulator/emulator';
@@ -8,20 +7,15 @@ import { TrackingSource } from '../../../../src/page/shell/input/tracking-source
 import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../../src/page/studio/recorder';
 import { noPointers, noSession } from '../../activity-services';
+import { trackedAt } from '../../frames';
 import { fake } from '../fake';
-
-const tracked = (x: number, y: number, z: number): TrackedPose => ({
-  position: vec3(x, y, z),
-  orientation: { x: 0, y: 0, z: 0, w: 1 },
-  tracking: 'tracked',
-});
 
 /** A person with eyes this high [m] in the posture of the guided calibration. */
 const standing = (time: number, eyeHeight: number): TrackingFrame => ({
   time,
-  head: tracked(0, eyeHeight, 0),
-  leftHand: tracked(-0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
-  rightHand: tracked(0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
+  head: trackedAt(0, eyeHeight, 0),
+  leftHand: trackedAt(-0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
+  rightHand: trackedAt(0.11 * eyeHeight, 0.81 * eyeHeight, -0.35 * eyeHeight),
 });
 
 /** An emulated headset that its user holds as a person of 1.6 m at the eyes stands. */

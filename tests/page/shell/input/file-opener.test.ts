@@ -1,23 +1,25 @@
-import { type Calibration, type TrackingFrame, writeRecording } from 'threepoint/core';
+import { type Calibration, writeRecording } from 'threepoint/core';
 import type { Notice } from 'threepoint-ui';
 import { describe, expect, test } from 'vitest';
 import { FileOpener } from '../../../../src/page/shell/input/file-opener';
 import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../../src/page/studio/recorder';
+import { headFrame } from '../../frames';
 import { fake } from '../fake';
 
 const person: Calibration = { eyeHeight: 1.72, armSpan: 1.7 };
 
-function frameAt(time: number): TrackingFrame {
-  const orientation = { x: 0, y: 0, z: 0, w: 1 };
-  const head = { position: { x: 0, y: 1.7, z: 0 }, orientation, tracking: 'tracked' } as const;
-  return { time, head, leftHand: null, rightHand: null };
-}
-
 /** A file of one second of this person. */
 const recordingFile = (name = 'walk.json') =>
   new File(
-    [writeRecording({ device: 'a test', rateHz: 72, calibration: person, frames: [frameAt(1), frameAt(2)] })],
+    [
+      writeRecording({
+        device: 'a test',
+        rateHz: 72,
+        calibration: person,
+        frames: [headFrame(1, 1.7), headFrame(2, 1.7)],
+      }),
+    ],
     name,
   );
 
@@ -127,9 +129,9 @@ describe('a dropped file', () => {
   test('a recording leaves another that is being made as it is, and a sentence says so', async () => {
     const { files: page, notices, recorder } = files();
     recorder.record({ device: 'a test', rateHz: 72, calibration: person });
-    recorder.observe(frameAt(1));
+    recorder.observe(headFrame(1, 1.7));
     await page.open(recordingFile());
-    recorder.observe(frameAt(2));
+    recorder.observe(headFrame(2, 1.7));
     expect(notices).toEqual([
       { level: 'error', text: 'walk.json could not be replayed: a recording is in progress; stop it first' },
     ]);

@@ -15,9 +15,9 @@ import { Pointing, TrackedSession } from 'threepoint/webxr';
 import type { SimulatedInput } from 'threepoint-games';
 import { createBallLoopbackHost } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';
-import { type ArcheryFrame, ArcheryPlay } from '../../../../src/page/archery/archery-play';
+import type { ArcheryFrame } from '../../../../src/page/archery/archery-play';
 import { CourtInput } from '../../../../src/page/ball/court-input';
-import { BallPlay } from '../../../../src/page/ball/match/ball-play';
+import type { BallPlay } from '../../../../src/page/ball/match/ball-play';
 import { createActor } from '../../../../src/page/emulator/actor';
 import { Pointers } from '../../../../src/page/shell/input/pointers';
 import { TrackingSource } from '../../../../src/page/shell/input/tracking-source';
@@ -25,6 +25,7 @@ import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../../src/page/studio/recorder';
 import { poseOf } from '../../../threepoint/core/estimation/drawn';
 import { controller, fakeHeadset, type Input } from '../../../threepoint/xr/fake-headset';
+import { archeryPage, ballPage } from '../../playing';
 import { fake } from '../fake';
 
 const eyes = vec3(0, defaultCalibration.eyeHeight, 0);
@@ -75,11 +76,7 @@ type Handless = ReturnType<typeof handless>;
 
 /** Archery in such a session. */
 function range(settings = { gaze: false }) {
-  const play = new ArcheryPlay(
-    defaultCalibration,
-    () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false }),
-    () => 7,
-  );
+  const play = archeryPage();
   const page: Handless = handless((time) => {
     const steering = page.pointers.steering;
     return steering && play.steer(time, steering);
@@ -180,9 +177,8 @@ describe('the ball game without hands', () => {
     const place = { place: null, settings: { actor: false }, headset: { worn: true, emulator: null } };
     const page: Handless = handless((time) => play.act(time, false), { gaze: true });
     const input = new CourtInput({ ...place, pointer: () => page.pointers.steering } as never, () => play);
-    const play: BallPlay = new BallPlay({
-      connect: (visitor, time) => host.connect(visitor, time),
-      visitor: { name: 'Robin', calibration: defaultCalibration, seat: 0 },
+    const play: BallPlay = ballPage(host, {
+      seat: 0,
       bots: () => true,
       readyByItself: () => input.isActor,
       steering: () => input.steering(),

@@ -6,13 +6,12 @@ import type { CalibrationStep } from 'threepoint-ui';
 import { createVrPointers } from 'threepoint-ui/vr';
 import { describe, expect, test, vi } from 'vitest';
 import type { OpenActivity } from '../../../../src/page/activity/activity';
+import type { ActivityContext } from '../../../../src/page/activity/activity-context';
 import { menuHeight } from '../../../../src/page/activity/activity-menu';
-import {
-  type PeopleMenuActions,
-  type PeopleMenuState,
-  peopleEntries,
-} from '../../../../src/page/people/menu/people-menu';
-import type { OtherPlayer } from '../../../../src/page/people/panel/other-players';
+import { PeopleMenu } from '../../../../src/page/people/menu/people-menu';
+import type { ControlledMatch } from '../../../../src/page/people/panel/match-controls';
+import type { MatchRound } from '../../../../src/page/people/panel/match-round';
+import type { VoicesState } from '../../../../src/page/people/voices/voices-state';
 import { activities as registered } from '../../../../src/page/shell/activity-registry';
 import type { CalibrationControl } from '../../../../src/page/shell/input/calibration-control';
 import type { InputParts } from '../../../../src/page/shell/input/input-parts';
@@ -30,11 +29,12 @@ import {
   type VrMenuState,
 } from '../../../../src/page/shell/panels/vr-menu/menu-buttons';
 import type { PageStudy } from '../../../../src/page/shell/session/page-study';
-import { createSettings, SettingsWriter } from '../../../../src/page/shell/session/settings';
+import { createSettings, SettingsWriter, type StoredSettings } from '../../../../src/page/shell/session/settings';
 import { readSwitches } from '../../../../src/page/shell/session/switches';
 import { Mirrors } from '../../../../src/page/studio/mirrors';
 import { allocatedPerFrame } from '../../../allocated-bytes';
 import { studyRun } from '../../activity-services';
+import { headFrame } from '../../frames';
 import { drawNowhere } from '../drawing-in-node';
 import { fake } from '../fake';
 import { expectApart, studioMenu } from '../menu-parts';
@@ -242,10 +242,8 @@ describe('in the headset', () => {
 
 /** A frame of a user who looks ahead; the left hand lies on the belly with its back towards the eyes. */
 const wearing = (height = 1.6, leftHand: TrackingFrame['leftHand'] = null): TrackingFrame => ({
-  time: 1,
-  head: { position: vec3(0, height, 0), orientation: identity, tracking: 'tracked' },
+  ...headFrame(1, height),
   leftHand,
-  rightHand: null,
 });
 
 describe('without a controller', () => {
@@ -401,23 +399,9 @@ describe('without a controller', () => {
 
 describe('the buttons of the menu', () => {
   const mirror: VrMenuState = { ...studioMenu, places: registered };
-  const match: PeopleMenuState = {
-    ready: null,
-    plainOthers: false,
-    others: [],
-    canInvite: false,
-    voices: { phase: 'none', muted: true, microphoneMissing: false },
-  };
-  const ben: OtherPlayer = {
-    seat: 1,
-    name: 'Ben',
-    station: 1,
-    label: '2 · Ben',
-    role: 'Right thrower',
-    status: 'muted',
-    silenced: false,
-    hidden: false,
-    muting: 'offered',
+  const ben: MatchRound['people'][number] = {
+    ...{ seat: 1, name: 'Ben', station: 1, label: '2 · Ben', role: 'Right thrower', free: false },
+    ...{ voice: 'muted', link: 'none', silenced: false, hidden: false },
   };
   const done: string[] = [];
   const actions: VrMenuActions = {
@@ -434,33 +418,38 @@ describe('the buttons of the menu', () => {
     chooseSkinTone: (tone) => void done.push(`in ${tone}`),
     exit: () => undefined,
   };
-  const ballActions: PeopleMenuActions = {
-    setPlainOthers: (on) => void done.push(`plain others ${on}`),
-    ready: (on) => void done.push(`ready ${on}`),
-    askVoices: (on) => void done.push(`ask ${on}`),
-    joinVoices: () => void done.push('join voices'),
-    mute: (on) => void done.push(`mute ${on}`),
-    listOthers: () => void done.push('list others'),
-    invite: () => void done.push('invite'),
-  };
-  /** The menu at the court. */
-  const atCourt = (change: Partial<PeopleMenuState> = {}): VrMenuState => ({
-    ...mirror,
-    activity: { entries: peopleEntries({ ...match, ...change }, ballActions) },
-  });
+  interface AtCourt {
+    readonly round?: Partial<MatchRound>;
+    readonly voices?: Partial<VoicesState>;
+    readonly plainOthers?: boolean;
+    readonly room?: string;
+  }
+  /** The menu at the court, during a match that the user plays alone unless these say otherwise. */
+  function atCourt({ round, voices, plainOthers = false, room }: AtCourt = {}): VrMenuState {
+    const running = { seat: 0, phase: 'running', ready: false, ended: null, people: [] };
+    const match = fake<ControlledMatch>({
+      round: () => ({ ...running, ...round }) as MatchRound,
+      banner: () => null,
+      play: { connection: { setReady: (on: boolean) => done.push(`ready ${on}`) } },
+      voices: { state: { phase: 'none', muted: true, microphoneMissing: false, message: null, ...voices } },
+    });
+    const context = fake<ActivityContext>({
+      settings: { plainOthers },
+      writer: { keep: (kept: StoredSettings) => done.push(`plain others ${kept.plainOthers}`) },
+      switches: { room: room ?? null },
+      server: { state: 'here' },
+    });
+    return { ...mirror, activity: new PeopleMenu(match, context).state() };
+  }
+  const between = (ready: boolean) => ({ phase: 'ready', ready }) as const;
   const labels = (state: VrMenuState) => menuButtons(state, actions).map(({ label }) => label);
 
   test.each([
     ['', false],
     [', where the device was asked for its body', true],
   ])('lie apart and inside the menu at the mirror and at the court%s', (_, deviceBody) => {
-    const voices = (phase: PeopleMenuState['voices']['phase']) =>
-      atCourt({
-        ready: true,
-        others: [ben],
-        canInvite: true,
-        voices: { phase, muted: true, microphoneMissing: false },
-      });
+    const voices = (phase: VoicesState['phase']) =>
+      atCourt({ round: { ...between(true), people: [ben] }, room: 'ours', voices: { phase } });
     for (const state of [mirror, voices('in'), voices('asked'), voices('off')]) {
       const buttons = menuButtons({ ...state, deviceBody, builtInBody: 'woman' }, actions);
       expect(buttons.some(({ id }) => id === 'device')).toBe(deviceBody);
@@ -478,14 +467,14 @@ describe('the buttons of the menu', () => {
     expect(labels({ ...mirror, builtInBody: 'child' })).toEqual(expect.arrayContaining(['Body: Child', 'Skin: own']));
     expect(labels(mirror).join()).not.toContain('Skin');
     expect(labels(atCourt())).toContain('To the mirror');
-    expect(labels(atCourt({ ready: false }))).toContain('Ready');
-    expect(labels(atCourt({ ready: true }))).toContain('Wait for me');
+    expect(labels(atCourt({ round: between(false) }))).toContain('Ready');
+    expect(labels(atCourt({ round: between(true) }))).toContain('Wait for me');
     expect(labels(atCourt())).not.toContain('Ready');
-    expect(labels(atCourt({ canInvite: true }))).toContain('Invite');
+    expect(labels(atCourt({ room: 'ours' }))).toContain('Invite');
     expect(labels(atCourt())).not.toContain('Invite');
-    expect(labels(atCourt({ others: [ben] }))).toContain('Players');
+    expect(labels(atCourt({ round: { people: [ben] } }))).toContain('Players');
     expect(labels(atCourt())).not.toContain('Players');
-    const talking = (phase: PeopleMenuState['voices']['phase'], muted = true, microphoneMissing = false) =>
+    const talking = (phase: VoicesState['phase'], muted = true, microphoneMissing = false) =>
       labels(atCourt({ voices: { phase, muted, microphoneMissing } }));
     expect(talking('none').join()).not.toMatch(/Talk|ute me/);
     expect(talking('off')).toContain('Talk');
@@ -510,7 +499,7 @@ describe('the buttons of the menu', () => {
         ?.act();
     press('overlay', { ...mirror, overlay: true });
     press('ball', mirror);
-    press('ready', atCourt({ ready: true }));
+    press('ready', atCourt({ round: between(true) }));
     press('body', { ...mirror, builtInBody: 'child' });
     press('skin', { ...mirror, builtInBody: 'child' });
     press('skin', { ...mirror, builtInBody: 'child', skinTone: 'dark' });
@@ -545,8 +534,7 @@ describe('the buttons of the menu', () => {
     hands.push(hand, gaze);
     pointers.offersGaze = true;
     const frame: TrackingFrame = {
-      time: 0,
-      head: { position: vec3(0, 1.6, 0), orientation: identity, tracking: 'tracked' },
+      ...headFrame(0, 1.6),
       leftHand: { position: vec3(-0.05, 1.45, -0.35), orientation: turnedToFace, tracking: 'tracked' },
       rightHand: null,
     };

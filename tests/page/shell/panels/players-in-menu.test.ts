@@ -25,6 +25,8 @@ const player = (seat: number, change: Partial<OtherPlayer> = {}): OtherPlayer =>
   label: `${seat + 1} · Player ${seat}`,
   role: 'Right thrower',
   status: 'can be heard',
+  voice: 'open',
+  link: 'connected',
   silenced: false,
   hidden: false,
   muting: 'offered',

@@ -10,7 +10,7 @@ describe('the address of the page', () => {
         actor: true,
         panel: null,
         estimator: null,
-        executionProvider: 'wasm',
+        ep: 'wasm',
         avatar: null,
         quality: null,
         replay: null,
@@ -38,7 +38,7 @@ describe('the address of the page', () => {
       emulate: true,
       actor: false,
       estimator: 'ik',
-      executionProvider: 'webgpu',
+      ep: 'webgpu',
       avatar: '/a.vrm',
       quality: 'low',
     });
@@ -64,7 +64,7 @@ describe('the address of the page', () => {
 
   test('a value that no switch takes is reported and counts as not given; the others count', () => {
     const { switches, complaints } = readSwitches('?estimator=magic&quality=low&ep=gpu');
-    expect(switches).toMatchObject({ estimator: null, quality: 'low', executionProvider: 'wasm' });
+    expect(switches).toMatchObject({ estimator: null, quality: 'low', ep: 'wasm' });
     expect(complaints).toHaveLength(2);
     expect(complaints.join(' ')).toContain('estimator=magic');
     expect(complaints.join(' ')).toContain('ep=gpu');

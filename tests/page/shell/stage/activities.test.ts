@@ -1,4 +1,4 @@
-import { allReleased, nothingPressed, type TrackingFrame, unknownFingers } from 'threepoint/core';
+import { allReleased, nothingPressed, unknownFingers } from 'threepoint/core';
 import { type Side, vec3 } from 'threepoint/math';
 import { gameNames } from 'threepoint-games/all';
 import { describe, expect, test, vi } from 'vitest';
@@ -23,20 +23,11 @@ import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../../src/page/studio/recorder';
 import { posed } from '../../../games/archery/bowman';
 import { activityServices, noPointers, noSession, studyRun } from '../../activity-services';
+import { headFrame } from '../../frames';
 import { drawNowhere } from '../drawing-in-node';
 import { fake } from '../fake';
 
 drawNowhere();
-
-const ahead = { x: 0, y: 0, z: 0, w: 1 };
-
-/** A user whose eyes are this high [m]. */
-const wearer = (time: number, eyeHeight: number): TrackingFrame => ({
-  time,
-  head: { position: vec3(0, eyeHeight, 0), orientation: ahead, tracking: 'tracked' },
-  leftHand: null,
-  rightHand: null,
-});
 
 /** A page with these activities, and what they do to it. */
 function page(listed: readonly Activity[] = registered) {
@@ -171,7 +162,7 @@ describe('a round', () => {
   test('gives a seated player targets as high for the eyes as a standing one’s', async () => {
     const { activities, archery, headset, layout } = await opened;
     const targetsFor = (eyeHeight: number) => {
-      activities.play(wearer(eyeHeight, eyeHeight), nothingPressed);
+      activities.play(headFrame(eyeHeight, eyeHeight), nothingPressed);
       archery().startRound(8, 70);
       return layout().map(({ centre }) => centre.y);
     };
@@ -193,8 +184,8 @@ describe('a round', () => {
 
   test('is shot by whom the user chooses, where a recording replays there too', async () => {
     const { archery, recorder, tracked } = await range();
-    const ofRecording = wearer(1, 1.9);
-    const recording = { device: 'a test', rateHz: 60, calibration: null, frames: [ofRecording, wearer(2, 1.9)] };
+    const ofRecording = headFrame(1, 1.9);
+    const recording = { device: 'a test', rateHz: 60, calibration: null, frames: [ofRecording, headFrame(2, 1.9)] };
     for (const shooter of ['mouse', 'actor'] as const) {
       recorder.load('tall.json', recording);
       recorder.replay();
@@ -305,7 +296,7 @@ describe('a round in a study', () => {
     archery().startRound(42, 30);
     expect(layout()).not.toEqual(begun);
     expect(settings).toMatchObject({ seconds: 30, everyHitCounts: false });
-    activities.play(wearer(1, 1.6), nothingPressed);
+    activities.play(headFrame(1, 1.6), nothingPressed);
     expect(archery().probe()?.phase).toBe('running');
     expect(archery().probe()?.secondsLeft).toBeCloseTo(30, 1);
   });
@@ -321,7 +312,7 @@ describe('a round in a study', () => {
     });
     study.runners = { archery: runner };
     runner.start({ seed: 3, seconds: 1 });
-    for (let time = 2; time < 4; time += 1 / 30) activities.play(wearer(time, 1.6), nothingPressed);
+    for (let time = 2; time < 4; time += 1 / 30) activities.play(headFrame(time, 1.6), nothingPressed);
     expect(runner.end).toMatchObject({ ended: 'time', score: 0 });
   });
 
@@ -344,7 +335,7 @@ function darts(done: string[]) {
       scene: dartScene,
       mirrorSide: 'right',
       palette: 'red',
-      act: (time) => ({ frame: wearer(time, 1.5), buttons: nothingPressed }),
+      act: (time) => ({ frame: headFrame(time, 1.5), buttons: nothingPressed }),
       update(frame) {
         done.push(`update at ${frame.time} s`);
         return [{ side: 'left', strength: 1, seconds: 0.02 }];
@@ -466,7 +457,7 @@ describe('a third activity', () => {
     });
     expect(activities.current?.probe?.()).toEqual({ name: 'darts', seed: 5, participant: 'P02' });
     darts?.start({ seed: 3, seconds: 9 });
-    activities.play(wearer(1, 1.6), nothingPressed);
+    activities.play(headFrame(1, 1.6), nothingPressed);
     darts?.abort();
     await vi.waitFor(() => expect(activities.name).toBe('studio'));
     expect(done).toEqual(['start 3', 'update at 1 s', 'played', 'dispose']);

@@ -3,19 +3,8 @@ import { describe, expect, test } from 'vitest';
 import type { Settings } from '../../../../src/page/shell/session/settings';
 import { embody } from '../../../../src/page/shell/stage/join-study';
 import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
+import { headFrame } from '../../frames';
 import { fake } from '../fake';
-
-const head = {
-  position: { x: 0, y: 1.6, z: 0 },
-  orientation: { x: 0, y: 0, z: 0, w: 1 },
-  tracking: 'tracked',
-} as const;
-const frameAt = (time: number, height: number) => ({
-  time,
-  head: { ...head, position: { x: 0, y: height, z: 0 } },
-  leftHand: null,
-  rightHand: null,
-});
 
 /** A page without a device to draw on; `missing`: what it cannot load. */
 function pageOf(missing: readonly string[] = []) {
@@ -62,11 +51,11 @@ describe('the body of a round', () => {
   test('is impaired for as long as a condition says so', async () => {
     const { parts, degradation } = pageOf();
     await embody(parts, { estimator: 'ik', latencyMs: 100 }, 1);
-    degradation.apply(frameAt(1, 1.6));
-    expect(degradation.apply(frameAt(1.05, 1.7)).head.position.y).toBe(1.6);
+    degradation.apply(headFrame(1, 1.6));
+    expect(degradation.apply(headFrame(1.05, 1.7)).head.position.y).toBe(1.6);
     await embody(parts, { estimator: 'ik' }, 1);
-    degradation.apply(frameAt(1.1, 1.7));
-    expect(degradation.apply(frameAt(1.15, 1.8)).head.position.y).toBe(1.8);
+    degradation.apply(headFrame(1.1, 1.7));
+    expect(degradation.apply(headFrame(1.15, 1.8)).head.position.y).toBe(1.8);
   });
 
   test.each(['paper', 'child'])('is refused where "%s" cannot be had', async (missing) => {

@@ -1,7 +1,7 @@
 import { Vector3 } from 'three';
 import type { Pointer } from 'threepoint/core';
 import type { Pose } from 'threepoint/math';
-import { createPanelTouch, createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr';
+import { createPanelTouch, createVrPanel, drawText, fillRoundedRect, vrColors } from 'threepoint-ui/vr';
 
 const [width, height] = [720, 200];
 /** Before the eyes, and below them there [m]. */
@@ -21,14 +21,14 @@ export class GazeOffer {
     this.#panel.mesh.visible = false;
     this.#panel.draw((context) => {
       fillRoundedRect(context, [2, 2, width - 4, height - 4], 40, vrColors.glass, vrColors.line);
-      context.textAlign = 'center';
-      context.textBaseline = 'middle';
-      context.fillStyle = vrColors.inkSoft;
-      context.font = `500 32px ${vrFont}`;
-      context.fillText('No hand or controller is tracked.', width / 2, 68, width - 80);
-      context.fillStyle = vrColors.ink;
-      context.font = `650 42px ${vrFont}`;
-      context.fillText('Look here to choose by gaze', width / 2, 130, width - 80);
+      const { ink, inkSoft } = vrColors;
+      const writing = { align: 'center', baseline: 'middle', maxWidth: width - 80 } as const;
+      drawText(context, 'No hand or controller is tracked.', [width / 2, 68], {
+        ...writing,
+        font: '500 32px',
+        color: inkSoft,
+      });
+      drawText(context, 'Look here to choose by gaze', [width / 2, 130], { ...writing, font: '650 42px', color: ink });
     });
   }
 

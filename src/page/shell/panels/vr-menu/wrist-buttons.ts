@@ -1,7 +1,7 @@
 import { Group, Matrix4, Quaternion, Vector3 } from 'three';
 import { type Pointer, sideSign, type TrackingFrame } from 'threepoint/core';
 import { type Side, sides } from 'threepoint/math';
-import { createPanelTouch, createVrPanel, fillRoundedRect, vrColors, vrFont } from 'threepoint-ui/vr';
+import { createPanelTouch, createVrPanel, drawText, fillRoundedRect, vrColors } from 'threepoint-ui/vr';
 
 const [width, height] = [240, 120];
 /**
@@ -25,11 +25,8 @@ function createWristButton(side: Side) {
   panel.mesh.visible = false;
   panel.draw((context) => {
     fillRoundedRect(context, [4, 4, width - 8, height - 8], 40, vrColors.glass, vrColors.accent);
-    context.fillStyle = vrColors.ink;
-    context.font = `650 52px ${vrFont}`;
-    context.textAlign = 'center';
-    context.textBaseline = 'middle';
-    context.fillText('Menu', width / 2, height / 2 + 3);
+    const writing = { font: '650 52px', color: vrColors.ink, align: 'center', baseline: 'middle' } as const;
+    drawText(context, 'Menu', [width / 2, height / 2 + 3], writing);
   });
   return { side, panel, touch: createPanelTouch(panel, 'wrist', aimsByEyes) };
 }
