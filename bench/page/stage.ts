@@ -6,7 +6,7 @@ import { Mirror } from 'threepoint/three';
 import { createRenderer } from '../../src/page/scene/renderer';
 import { createStudio } from '../../src/page/studio/studio';
 import { createAvatar } from '../../src/threepoint/avatar/avatar';
-import { type NetworkName, needsRegressor } from '../../src/threepoint/core/estimation/estimators';
+import { type NetworkName, needsRegressor, networkOf } from '../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import { loadRegressor } from '../../src/threepoint/onnx/load-regressor';
 
@@ -46,7 +46,7 @@ export const loadNetwork = (name: NetworkName): Promise<PoseRegressor> =>
 /** For games, which ask their network themselves. */
 export async function openStage() {
   const regressors: Partial<Record<EstimatorName, PoseRegressor>> = {};
-  for (const name of estimatorNames.filter(needsRegressor)) regressors[name] = await loadNetwork(name);
+  for (const name of estimatorNames.filter(needsRegressor)) regressors[name] = await loadNetwork(networkOf(name)!);
   const estimators = recordOf(estimatorNames, (name) =>
     createEstimator(name, defaultCalibration, regressors[name] ?? null),
   );

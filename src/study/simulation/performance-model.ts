@@ -36,7 +36,7 @@ export const statedPerformanceModel: PerformanceModel = {
   effects: {},
   practice: 0.02,
   pace: { mean: 7, deviation: 1.5 },
-  frameMs: { 'hands-only': 4, ik: 5, paper: 6, learned: 5.5 },
+  frameMs: { 'hands-only': 4, ik: 5, paper: 6, 'paper-published': 6, learned: 5.5 },
   frameSpread: 0.25,
   refreshRateHz: 72,
   loss: { chance: 0.2, seconds: 0.5 },

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { describe } from 'vitest';
 import { isNightly } from '../../../nightly';
-import { bodies, factIf, jointsOf, openSubject } from './contract-subjects';
+import { factIf, fitted, jointsOf, openSubject } from './contract-subjects';
 import { type Joints, show } from './drawn';
 import {
   expectSlow,
@@ -14,7 +14,7 @@ import {
   watched,
 } from './still-people';
 
-describe.each(bodies)('$label draws a person', (subject) => {
+describe.each(fitted)('$label draws a person', (subject) => {
   const { create, runs } = openSubject(subject);
 
   factIf(true)('who holds still: after two seconds still, hands within reach on their controllers', async () => {
