@@ -46,7 +46,7 @@ const programs = {
   motion: {
     program: 'scripts/motion/main.ts',
     usage:
-      'npm run tool -- motion FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper|device] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
+      'npm run tool -- motion FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper|paper-published|device] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
       'FILE is a recording that the page made, or motion capture (.bvh, .vrma, .fbx, .glb); docs/motion.md says the rest.',
     options: { texts: ['to', 'estimator', 'unit', 'rate'], paths: ['out', 'avatar'], rest: 'paths' },
     check(given) {

@@ -49,12 +49,9 @@ export function createDriver(
   regressor: PoseRegressor | null,
   frameByFrame = false,
 ): Driver<TimedFrame> {
-  const published = name === 'paper-published';
-  const options = published ? { paperOrientations: true } : { frameByFrame };
+  const options = frameByFrame ? { frameByFrame } : {};
   const estimator =
-    name === 'ik'
-      ? createIk(calibration, options)
-      : createWithNetwork(published ? 'paper' : name, calibration, regressor, options);
+    name === 'ik' ? createIk(calibration, options) : createWithNetwork(name, calibration, regressor, options);
   return pipelineDriver(name, estimator, calibration);
 }
 

@@ -14,7 +14,13 @@ const skillDeviation = 0.08;
 /** The time between two shots [s]: mean and standard deviation. */
 const pace = { mean: 7, deviation: 1.5 };
 /** The median work per frame by estimator [ms]; the spread is the standard deviation of its logarithm. */
-const frameMs: Readonly<Record<string, number>> = { 'hands-only': 4, ik: 5, paper: 6, learned: 5.5 };
+const frameMs: Readonly<Record<string, number>> = {
+  'hands-only': 4,
+  ik: 5,
+  paper: 6,
+  'paper-published': 6,
+  learned: 5.5,
+};
 const frameSpread = 0.25;
 const refreshRateHz = 72;
 /** The chance per trial that a hand is lost, and for how many seconds. */

@@ -3,7 +3,7 @@ import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import { type NetworkName, needsRegressor, networkOf } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
+import { type EstimatorName, estimatorNames, type PoseEstimator } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
 interface EstimatorSelectorOptions {
@@ -167,9 +167,10 @@ export class EstimatorSelector {
   #markUnavailable(network: NetworkName, error: unknown): void {
     if (this.#disposed || this.#unavailable[network] !== undefined) return;
     const reason = reasonOf(error);
-    this.#unavailable[network] = reason;
+    const isLost = (name: EstimatorName) => needsRegressor(name) && networkOf(name) === network;
+    for (const lost of estimatorNames.filter(isLost)) this.#unavailable[lost] = reason;
     const { name } = this.#current;
-    const isSelected = this.#selected === network;
+    const isSelected = isLost(this.#selected);
     if (isSelected) this.#selected = 'ik';
     if (isSelected && name !== 'ik') this.#switchTo('ik', null);
     else if (this.#regressor && networkOf(name) === network) this.#switchTo(needsRegressor(name) ? 'ik' : name, null);

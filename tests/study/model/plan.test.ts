@@ -1,4 +1,5 @@
 import fc from 'fast-check';
+import { threePointNames } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { groupsOf, ordersByGroup, ordersOf } from '../../../src/study/model/plan/allocation';
 import {
@@ -191,6 +192,14 @@ describe('the order of conditions', () => {
       }
     }
   });
+});
+
+test.each(threePointNames)('the condition of a study may have %s', (estimator) => {
+  const plan = parsePlan(
+    JSON.stringify(planWith(JSON.parse(paperFile), 'conditions.1.estimator', estimator)),
+    'mine.json',
+  );
+  expect(plan.conditions[1]!.estimator).toBe(estimator);
 });
 
 describe('a study file with a mistake', () => {

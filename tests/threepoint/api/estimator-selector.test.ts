@@ -104,7 +104,18 @@ describe('the estimator that draws', () => {
     await choice.setEstimator(name);
     const needed = networkOf(name);
     expect([choice.selected, choice.current.name]).toEqual(name === 'paper' ? ['ik', 'ik'] : ['device', 'device']);
-    expect(faults).toEqual([`${needed}: estimator “${needed}” needs the regressor of the same name`]);
+    expect(faults).toEqual([`${needed}: estimator “${needed}” needs the regressor of “${needed}”`]);
+  });
+
+  test('a failed network makes every method that needs it unavailable', async () => {
+    const { choice, faults } = choiceThat(async () => Promise.reject(new Error('no such file')));
+    await choice.setEstimator('paper-published');
+    expect([choice.selected, choice.current.name]).toEqual(['ik', 'ik']);
+    expect(choice.unavailable).toEqual({ paper: 'no such file', 'paper-published': 'no such file' });
+    await choice.setEstimator('paper-published');
+    await choice.setEstimator('paper');
+    expect([choice.selected, choice.current.name]).toEqual(['ik', 'ik']);
+    expect(faults).toEqual(['paper: no such file']);
   });
 
   test('a name of no estimator is refused in a sentence, and changes nothing', async () => {

@@ -4,7 +4,7 @@ import { defaultCalibration } from '../../../src/threepoint/core/body/calibratio
 import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
 import { closedHand } from '../../../src/threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
-import { createEstimator, needsRegressor } from '../../../src/threepoint/core/estimation/estimators';
+import { createEstimator, networkOf } from '../../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../../src/threepoint/core/estimation/networks/pose-regressor';
 import { distance } from '../../../src/threepoint/core/math/vec3';
 import { createSkeletonPose } from '../../../src/threepoint/core/motion/imported-motion';
@@ -33,25 +33,29 @@ const networks = async (name: 'paper' | 'learned') => (name === 'learned' ? open
 const textOf = (parts: readonly unknown[]): string => parts.join('');
 
 describe('a recording', () => {
-  test.each(['ik', 'learned', 'paper'] as const)('becomes the BVH of what %s draws live, within 1 mm', async (name) => {
-    const { parts, extension } = await exportMotion(recording, { format: 'bvh', estimator: name, networks });
-    expect(extension).toBe('bvh');
-    const file = finishWork(readBvh(textOf(parts)));
-    const pose = createSkeletonPose(file.joints.length);
-    const regressor = needsRegressor(name) ? await networks(name) : null;
-    const live = createEstimator(name, defaultCalibration, regressor);
-    const skeleton = skeletonFromCalibration(defaultCalibration);
-    for (const [i, frame] of recording.frames.entries()) {
-      const { body } = await show(live, frame);
-      const joints = forwardKinematics(skeleton, body!);
-      poseBvh(file, i, pose);
-      for (const joint of ['leftHand', 'rightLowerArm', 'chest', 'hips'] as const) {
-        const at = pose.positions[file.joints.findIndex((found) => found.name === joint)]!;
-        expect(distance(turnPoint(at), joints[joint].position), `${joint}, frame ${i}`).toBeLessThan(1e-3);
+  test.each(['ik', 'learned', 'paper', 'paper-published'] as const)(
+    'becomes the BVH of what %s draws live, within 1 mm',
+    async (name) => {
+      const { parts, extension } = await exportMotion(recording, { format: 'bvh', estimator: name, networks });
+      expect(extension).toBe('bvh');
+      const file = finishWork(readBvh(textOf(parts)));
+      const pose = createSkeletonPose(file.joints.length);
+      const network = networkOf(name);
+      const regressor = network && (await networks(network));
+      const live = createEstimator(name, defaultCalibration, regressor);
+      const skeleton = skeletonFromCalibration(defaultCalibration);
+      for (const [i, frame] of recording.frames.entries()) {
+        const { body } = await show(live, frame);
+        const joints = forwardKinematics(skeleton, body!);
+        poseBvh(file, i, pose);
+        for (const joint of ['leftHand', 'rightLowerArm', 'chest', 'hips'] as const) {
+          const at = pose.positions[file.joints.findIndex((found) => found.name === joint)]!;
+          expect(distance(turnPoint(at), joints[joint].position), `${joint}, frame ${i}`).toBeLessThan(1e-3);
+        }
       }
-    }
-    await regressor?.dispose();
-  });
+      await regressor?.dispose();
+    },
+  );
 
   test.each(['csv', 'vrma'] as const)('becomes a file of kind %s', async (format) => {
     const { parts, extension, type } = await exportMotion(recording, { format, estimator: 'ik' });

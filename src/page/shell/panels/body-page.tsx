@@ -1,10 +1,10 @@
 import { useRef } from 'preact/hooks';
 import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
 import { Button, Details, Toggle, TypedInput } from 'threepoint-ui/controls';
-import { estimatorOrder, estimatorTexts } from '../session/estimator-texts';
+import { estimatorTexts, offeredEstimators } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel-actions';
 
-const methodDetails = estimatorOrder.map((name) => [estimatorTexts[name].label, estimatorTexts[name].details] as const);
+const methodDetails = Object.values(estimatorTexts).map(({ label, details }) => [label, details] as const);
 
 const measureDetails = [
   ['Height', 'Gives the eye height, of which the offsets of trunk and head are ratios.'],
@@ -16,7 +16,7 @@ const measureDetails = [
 const Estimators = ({ state: { estimator, unavailable, bodyComplaint }, actions }: PanelPageProps) => (
   <fieldset class="choices">
     <legend>How the body moves</legend>
-    {estimatorOrder.map((name) => {
+    {offeredEstimators(estimator).map((name) => {
       const { label, text } = estimatorTexts[name];
       const reason = unavailable[name];
       const missing = name === 'device' && bodyComplaint !== null ? `Learned is used instead: ${bodyComplaint}.` : null;

@@ -8,7 +8,7 @@ interface EstimatorText {
   readonly details: string;
 }
 
-/** The texts of each estimator, in the order in which they are offered: best first, then what needs more. */
+/** The texts of each estimator: best first, then what needs more. */
 export const estimatorTexts: Readonly<Record<EstimatorName, EstimatorText>> = {
   learned: {
     label: 'Learned',
@@ -26,6 +26,11 @@ export const estimatorTexts: Readonly<Record<EstimatorName, EstimatorText>> = {
     text: 'For comparison: as in the study of Anvari, Park and Kim (2023).',
     details: 'The paper’s network estimates six joints from the positions and Euler angles of one frame.',
   },
+  'paper-published': {
+    label: 'Paper as published',
+    text: 'For comparison: with the bones of the study of Anvari, Park and Kim (2023), too.',
+    details: 'The joints of Paper, with the orientations of the paper’s section 3.5: no fit, no filters.',
+  },
   'hands-only': {
     label: 'Hands only',
     text: 'Head and hands, and nothing between them.',
@@ -39,5 +44,8 @@ export const estimatorTexts: Readonly<Record<EstimatorName, EstimatorText>> = {
   },
 };
 
-/** The order in which they are offered. */
-export const estimatorOrder = Object.keys(estimatorTexts) as readonly EstimatorName[];
+const names = Object.keys(estimatorTexts) as readonly EstimatorName[];
+
+/** Returns the estimators that visitors are offered, in this order; one for researchers once it is selected. */
+export const offeredEstimators = (selected?: EstimatorName): readonly EstimatorName[] =>
+  names.filter((name) => name !== 'paper-published' || name === selected);

@@ -9,16 +9,22 @@ import type { PoseRegressor } from './networks/pose-regressor';
 import { Pipeline, type PipelineOptions } from './pipeline';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-estimator';
 
-/** The methods that cannot work without their network. */
 export type NetworkName = 'paper' | 'learned';
 
-export const needsRegressor = (name: EstimatorName): name is NetworkName => name === 'paper' || name === 'learned';
+/** The methods that cannot work without their network. */
+type NetworkMethod = NetworkName | 'paper-published';
+
+export const needsRegressor = (name: EstimatorName): name is NetworkMethod =>
+  name === 'paper' || name === 'paper-published' || name === 'learned';
 
 /**
  * Returns the network that a method loads, or null. `device` uses `learned` as its fallback, but also works without it.
  */
-export const networkOf = (name: EstimatorName): NetworkName | null =>
-  needsRegressor(name) ? name : name === 'device' ? 'learned' : null;
+export function networkOf(name: EstimatorName): NetworkName | null {
+  if (name === 'paper-published') return 'paper';
+  if (name === 'device') return 'learned';
+  return needsRegressor(name) ? name : null;
+}
 
 /** The joints of inverse kinematics, uncorrected. */
 const ikAlone: JointSource = {
@@ -39,37 +45,36 @@ export const createIk = (calibration: Calibration, options?: PipelineOptions): P
  * to another method.
  */
 export function createWithNetwork(
-  name: NetworkName,
+  name: NetworkMethod,
   calibration: Calibration,
   regressor: PoseRegressor | null,
   options?: PipelineOptions,
 ): Pipeline {
-  if (regressor?.contract.name !== name) throw new Error(`estimator “${name}” needs the regressor of the same name`);
-  const source = name === 'paper' ? createPaper(regressor) : createResidual(calibration, regressor);
+  const network = networkOf(name);
+  if (regressor?.contract.name !== network) throw new Error(`estimator “${name}” needs the regressor of “${network}”`);
+  const source = network === 'paper' ? createPaper(regressor) : createResidual(calibration, regressor);
   return new Pipeline(name, calibration, source, options);
 }
 
 /**
- * Creates an estimator by its name. Throws an Error for `paper` and `learned` without their regressor; `device` without
+ * Creates an estimator by its name. Throws an Error for a method without the regressor that it needs; `device` without
  * that of `learned` falls back on IK. Throws a RangeError for an unknown name, or for measures [m] that no person has.
  * `pinning` of threepoint/trackers draws the trackers of frames.
  *
- * `paper-published` is `paper`, with its regressor and name, but with the orientations of section 3.5 of the paper: no
- * torso and arm fitting, no filters, no trackers beyond head and hands. It serves comparisons; no list has its name.
+ * `paper-published` is `paper`, with its regressor, but with the orientations of section 3.5 of the paper: no torso and
+ * arm fitting, no filters, no trackers beyond head and hands.
  *
  * @example
  * const estimator = createEstimator('learned', calibration, await loadLearned());
  */
 export function createEstimator(
-  name: EstimatorName | 'paper-published',
+  name: EstimatorName,
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
   options: PipelineOptions = {},
 ): PoseEstimator {
   assertCalibration(calibration);
   options.pinning?.assertOffsets(calibration);
-  if (name === 'paper-published')
-    return createWithNetwork('paper', calibration, regressor, { ...options, paperOrientations: true });
   if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor, options);
   if (name === 'device') {
     const otherwise = regressor ? createResidual(calibration, regressor) : ikAlone;

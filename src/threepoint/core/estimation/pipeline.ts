@@ -87,10 +87,6 @@ interface OwnedPose {
 export interface PipelineOptions {
   /** Whether filters and speed limits are left out, for benches that measure their cost. */
   readonly frameByFrame?: boolean;
-  /**
-   * Whether the body has the orientations of section 3.5 of the paper instead of torso and arm fitting, frame by frame.
-   */
-  readonly paperOrientations?: boolean;
   /** Draws the trackers of frames; absent: frames must have none. */
   readonly pinning?: Pinning | undefined;
 }
@@ -113,13 +109,13 @@ export class Pipeline implements PoseEstimator {
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
   readonly #frameByFrame: boolean;
-  /** The body by section 3.5 of the paper; null: by torso and arm fitting. */
+  /** The body by section 3.5 of the paper, frame by frame; null: by torso and arm fitting. */
   readonly #orientations: PaperOrientations | null;
   readonly #pins: Pins | undefined;
 
   constructor(name: EstimatorName, calibration: Calibration, source: JointSource, options: PipelineOptions = {}) {
     this.name = name;
-    this.#orientations = options.paperOrientations ? makePaperOrientations() : null;
+    this.#orientations = name === 'paper-published' ? makePaperOrientations() : null;
     this.#frameByFrame = options.frameByFrame ?? this.#orientations !== null;
     this.#pins = options.pinning?.create(calibration);
     this.source = source;

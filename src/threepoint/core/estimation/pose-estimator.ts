@@ -3,7 +3,7 @@ import type { Calibration } from '../body/calibration';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 
 /** The methods that need only three tracked points. */
-export const threePointNames = ['hands-only', 'ik', 'paper', 'learned'] as const;
+export const threePointNames = ['hands-only', 'ik', 'paper', 'paper-published', 'learned'] as const;
 export type ThreePointName = (typeof threePointNames)[number];
 
 export const estimatorNames = [...threePointNames, 'device'] as const;

@@ -1,5 +1,12 @@
 import { Group, Raycaster, Vector3 } from 'three';
-import { defaultCalibration, GazePointer, MutablePointer, type Pointer, type TrackingFrame } from 'threepoint/core';
+import {
+  defaultCalibration,
+  type EstimatorName,
+  GazePointer,
+  MutablePointer,
+  type Pointer,
+  type TrackingFrame,
+} from 'threepoint/core';
 import { fromAxes, identity, type Ray, vec3 } from 'threepoint/math';
 import { DeviceCommands } from 'threepoint/webxr';
 import type { CalibrationStep } from 'threepoint-ui';
@@ -523,6 +530,14 @@ describe('the buttons of the menu', () => {
   test('an unavailable estimator is shown and cannot be pressed', () => {
     const looks = menuButtons({ ...mirror, unavailable: { learned: 'no network' } }, actions).map(({ look }) => look);
     expect(looks.slice(0, 4)).toEqual(['off', 'chosen', 'plain', 'plain']);
+  });
+
+  test('the method as published is offered only once it is selected', () => {
+    const looks = (estimator: EstimatorName) =>
+      menuButtons({ ...mirror, estimator }, actions).flatMap(({ id, look }) =>
+        id === 'paper-published' ? [look] : [],
+      );
+    expect([looks('paper'), looks('paper-published')]).toEqual([[], ['chosen']]);
   });
 
   // Measured: 600 to 750 bytes of numbers and emptied lists; 2,580 with a list and hits for each panel.

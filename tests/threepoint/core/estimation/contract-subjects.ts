@@ -5,7 +5,7 @@ import type { Calibration } from '../../../../src/threepoint/core/body/calibrati
 import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
 import { jointNames } from '../../../../src/threepoint/core/body/joints';
 import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import { createEstimator, needsRegressor } from '../../../../src/threepoint/core/estimation/estimators';
+import { createEstimator, needsRegressor, networkOf } from '../../../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
 import type { PipelineOptions } from '../../../../src/threepoint/core/estimation/pipeline';
 import { estimatorNames, type PoseEstimator } from '../../../../src/threepoint/core/estimation/pose-estimator';
@@ -59,6 +59,9 @@ export const subjects = [
 /** The subjects that show a body. */
 export const bodies = subjects.filter(({ name }) => name !== 'hands-only');
 
+/** The subjects whose torso and arms are fitted to head and hands; section 3.5 of the paper fits neither. */
+export const fitted = bodies.filter(({ name }) => name !== 'paper-published');
+
 /**
  * Makes estimators of this subject for the tests of the suite that calls it: their network is opened before the first
  * and closed after the last.
@@ -67,7 +70,7 @@ export function openSubject({ name, plain }: (typeof subjects)[number]) {
   const wantsModel = needsRegressor(name);
   let regressor: PoseRegressor | null = null;
   beforeAll(async () => {
-    if (wantsModel) regressor = plain ? openPlainModel() : await openShippedModel(name);
+    if (wantsModel) regressor = plain ? openPlainModel() : await openShippedModel(networkOf(name)!);
   });
   afterAll(() => regressor?.dispose());
 

@@ -104,6 +104,6 @@ describe('the method as published', () => {
   });
 
   test('needs the network of the paper', () => {
-    expect(() => createEstimator('paper-published', defaultCalibration)).toThrow(/“paper” needs the regressor/);
+    expect(() => createEstimator('paper-published', defaultCalibration)).toThrow(/needs the regressor of “paper”/);
   });
 });

@@ -27,7 +27,7 @@ import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tra
 import { cases } from '../../../nightly';
 import { evenly, seed, standpoint } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
-import { bodies, jointsOf, openSubject, person, rate, times } from './contract-subjects';
+import { fitted, jointsOf, openSubject, person, rate, times } from './contract-subjects';
 import { type Joints, poseOf, show } from './drawn';
 import { movingPerson } from './moving-person';
 import { at, calibration } from './posed-body';
@@ -93,7 +93,7 @@ function expectWhole(joints: Joints, body: Calibration): void {
   }
 }
 
-describe.each(bodies)('$label with trackers', (subject) => {
+describe.each(fitted)('$label with trackers', (subject) => {
   const { create, runs } = openSubject(subject);
 
   test.each([['hips'], ['chest']] as const)('draws a moving person’s %s within 1 mm of the tracker', async (name) => {

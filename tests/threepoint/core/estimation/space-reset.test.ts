@@ -10,6 +10,7 @@ import {
 } from 'threepoint/core';
 import { copyQuat, copyVec3, distance, fromAxisAngle, sides, type Transform, up, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
+import { needsRegressor, networkOf } from '../../../../src/threepoint/core/estimation/estimators';
 import { Pipeline } from '../../../../src/threepoint/core/estimation/pipeline';
 import { reportFigures } from '../../../reliability/report-figures';
 import { show } from './drawn';
@@ -37,7 +38,7 @@ test('a reset space leaves no body on the way: the first frame is a newcomer’s
   let worst = 0;
   let between = 0;
   for (const name of estimatorNames) {
-    const network = name === 'learned' || name === 'paper' ? await openShippedModel(name) : undefined;
+    const network = needsRegressor(name) ? await openShippedModel(networkOf(name)!) : undefined;
     const make = () =>
       network ? createEstimator(name, defaultCalibration, network) : createEstimator(name, defaultCalibration);
     const [estimator, fresh] = [make(), make()];

@@ -20,7 +20,7 @@ import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tra
 import { isNightly } from '../../../nightly';
 import { evenly, rotation, standpoint } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
-import { apart, bodies, calibrationOf, jointsOf, openSubject } from './contract-subjects';
+import { apart, calibrationOf, fitted, jointsOf, openSubject } from './contract-subjects';
 import { type Joints, show } from './drawn';
 import { tracked } from './moving-person';
 
@@ -178,7 +178,7 @@ function expectSlow(drawn: readonly Joints[]): void {
   expect(Math.max(...steps)).toBeLessThan(3 * slowStep + maxBeyond);
 }
 
-describe.each(bodies)('by $label', (subject) => {
+describe.each(fitted)('by $label', (subject) => {
   const { create, runs } = openSubject(subject);
 
   test('a still person is still after two seconds, with hands within reach on their controllers', async () => {

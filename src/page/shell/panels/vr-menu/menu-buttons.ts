@@ -19,7 +19,7 @@ import {
   menuMargin,
 } from '../../../activity/activity-menu';
 import { home } from '../../activity-registry';
-import { estimatorOrder, estimatorTexts } from '../../session/estimator-texts';
+import { estimatorTexts, offeredEstimators } from '../../session/estimator-texts';
 import { exitLabel } from '../panel-state';
 
 export interface VrMenuState {
@@ -79,7 +79,7 @@ function estimatorButtons(
   { estimator, unavailable, deviceBody }: VrMenuState,
   actions: VrMenuActions,
 ): readonly MenuButton[] {
-  const offered = estimatorOrder.filter((name) => deviceBody || name !== 'device');
+  const offered = offeredEstimators(estimator).filter((name) => deviceBody || name !== 'device');
   const each = (estimatorsHeight + estimatorGap) / offered.length;
   return offered.map((name, index) => ({
     id: name,
