@@ -132,6 +132,12 @@ describe('a network that is not', () => {
     await expect(loadRegressor(url)).rejects.toThrow(/^learned\.onnx: has the tensors .* its contract says points/);
   });
 
+  test('a model for features in the axes of the room', () => {
+    const [input] = contract.inputs as object[];
+    const inRoom = JSON.stringify({ ...contract, inputs: [{ ...input, frame: 'floor' }] });
+    expect(() => parseContract('paper.json', inRoom)).toThrow(/^paper\.json: inputs\.0\.frame: .*"floor"/);
+  });
+
   test('a contract that is no JSON, or lacks a field', () => {
     expect(() => parseContract('learned.json', '{')).toThrow(/^learned\.json: no valid JSON/);
     expect(() => parseContract('learned.json', JSON.stringify({ ...contract, sha256: 'abc' }))).toThrow(
