@@ -96,7 +96,7 @@ def table_1(page: Json, held_out: Json | None) -> str:
 
 
 def tables_2_and_3(page: Json, ik: Json, path: Json) -> str:
-    """Returns MSE and the right shoulder's MAE of both methods on test frames, and the errors on the page's code path."""
+    """Returns MSE and the right shoulder's MAE of both methods on test frames, and errors on the page's code path."""
 
     def new_people(method: str) -> list[str]:
         measured = path["methods"][method]

@@ -4,7 +4,6 @@ A stage is a file of figures. A finished stage with the same options is not run 
 """
 
 import argparse
-import json
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
