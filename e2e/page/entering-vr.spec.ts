@@ -125,8 +125,7 @@ for (const estimator of ['ik', 'learned', 'paper'] as const) {
         },
         { message: 'the joints move 40 cm to the right' },
       )
-      // The paper's network sees the room, not the body: it follows, but not exactly.
-      .toBeLessThan(estimator === 'paper' ? 0.15 : 0.02);
+      .toBeLessThan(0.02);
   });
 }
 

@@ -149,7 +149,8 @@ def test_hands_relative_to_the_forearm_change_their_angles_alone(corpus):
     from threepoint_training.train_paper import PaperInputs, frames_of
 
     room, parent = (
-        frames_of(corpus, ("002",), 1, PaperInputs(points="joints", hands=hands)) for hands in ("axes", "parent")
+        frames_of(corpus, ("002",), 1, PaperInputs(points="joints", axes="room", hands=hands))
+        for hands in ("axes", "parent")
     )
     np.testing.assert_array_equal(room.inputs[:, :, :, 0], parent.inputs[:, :, :, 0])
     np.testing.assert_array_equal(room.inputs[:, 0], parent.inputs[:, 0])

@@ -152,7 +152,7 @@ def _paper_input() -> dict[str, Any]:
         "shape": [1, 2, 3, 3],
         "meaning": "depth: position from the floor under the headset, then Euler angles (Y-X-Z); row: x, y, z; column: head, left hand, right hand",
         "unit": "m, rad",
-        "frame": "floor",
+        "frame": "heading",
     }
 
 
@@ -162,7 +162,7 @@ def _paper_output() -> dict[str, Any]:
         "shape": [1, OUTPUTS],
         "meaning": f"{JOINTS_IN_WORDS}: x, y, z from the floor under the headset",
         "unit": "m",
-        "frame": "floor",
+        "frame": "heading",
     }
 
 

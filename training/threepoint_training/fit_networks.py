@@ -8,8 +8,7 @@ import numpy as np
 import torch
 
 from . import export, fitted_kinematics, train_learned, train_paper
-from .paper_features import paper_features
-from .prepared_corpus import TRACKED_COLUMNS, PreparedCorpus
+from .prepared_corpus import PreparedCorpus
 from .splits import counted, trainable, trained_on
 from .training_config import TrainConfig
 from .training_report import TrainingReport
@@ -128,10 +127,8 @@ def write(
 ) -> None:
     """Writes a network with its contract."""
     if name == "paper":
-        first = run.corpus.clip_slice(0)
-        tracked = run.corpus.positions[first][:, TRACKED_COLUMNS].astype(np.float64)
-        examples = paper_features(tracked, run.corpus.rotations[first].astype(np.float64)).astype(np.float32)[::7]
         window = (0.0,)
+        examples = train_paper.frames_of(run.corpus, provenance.people[:1], run.config.seed).inputs[::97]
     else:
         window = run.config.learned.window_seconds
         examples = train_learned.held_out(run.corpus, provenance.people[:1], window).inputs[::97]

@@ -102,6 +102,7 @@ def feature_vectors() -> list[dict[str, Any]]:
         )
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
+        paper_input = paper_features(*solve_ik.to_heading(positions, rotations)[:2])
         cases.append(
             {
                 "calibration": person.calibration(),
@@ -116,7 +117,7 @@ def feature_vectors() -> list[dict[str, Any]]:
                         "handTilts": body.hand_tilts[i],
                         "ikJoints": floor_joints[i],
                         "features": vector[i],
-                        "paperInput": paper_features(positions[i : i + 1], rotations[i : i + 1])[0].ravel(),
+                        "paperInput": paper_input[i].ravel(),
                     }
                     for i in range(FRAMES)
                 ],
@@ -238,7 +239,7 @@ def model_vectors(models: Path) -> dict[str, Any]:
         contract = json.loads(contract_file.read_text())
         session = onnxruntime.InferenceSession(models / contract["file"])
         if contract["name"] == "paper":
-            inputs = paper_features(positions, rotations)
+            inputs = paper_features(*solve_ik.to_heading(positions, rotations)[:2])
         else:
             inputs = network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]))
         inputs = inputs[::12].astype(np.float32)

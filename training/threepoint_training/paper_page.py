@@ -5,8 +5,10 @@ paper` calls this.
 import argparse
 import json
 import sys
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import log
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +22,14 @@ Json = dict[str, Any]
 
 # How each reading of reproduce_paper.READINGS is called.
 LABELS = {
-    "page": "the page's",
+    "page": "the page's: axes that turn with the head",
+    "room": "axes of the room",
     "iterations": "150 batches an epoch",
     "joints": "recorded joints as inputs",
-    "heading": "axes that turn with the head",
     "parent": "hands' angles from the true forearm",
     "filtered": "similar poses left out",
     "wide": "width 2304",
-    "literal": "150 batches, width 2304, recorded joints, similar poses left out",
+    "literal": "150 batches, width 2304, recorded joints, filtered",
     "six": "six networks",
     "eighteen": "eighteen networks",
 }
@@ -51,7 +53,8 @@ _MSE = {
 _MSE_OF_METHODS = {"ik": 0.8066, "paper": 0.0448}
 _RIGHT_SHOULDER_MAE = {"ik": 0.1587, "paper": 0.0610}
 _MPJPE_CM = {"train": 2.4026, "test": 1.7301}
-_TIMES = {"ik": ((3.81, 19.65, 10.23), (4.28, 22.41, 16.78)), "paper": ((3.19, 14.75, 6.73), (3.36, 17.01, 9.21))}
+# Least, mean and most [ms].
+_TIMES = {"ik": ((3.81, 10.23, 19.65), (4.28, 16.78, 22.41)), "paper": ((3.19, 6.73, 14.75), (3.36, 9.21, 17.01))}
 _METHODS = {"ik": "IK", "paper": "the network"}
 
 
@@ -74,71 +77,72 @@ def _distance_from_the_paper(reading: Json) -> float:
     return sum(abs(log(reading[side]["mpjpeCm"] / published)) for side, published in _MPJPE_CM.items())
 
 
+def _together(values: Iterable[float], digits: int) -> str:
+    """Returns several figures of one cell."""
+    return "/".join(f"{value:.{digits}f}" for value in values)
+
+
 def table_1(page: Json, held_out: Json | None) -> str:
-    """Returns MSE by joint: the paper's, ours of standardised coordinates and in cm², and of people held out."""
-    sides = ("train", "test")
+    """Returns MSE by joint: the paper's, ours of standardised coordinates, and of people held out in cm²."""
 
-    def row(label: str, published: tuple[float, float], joint: str | None) -> list[str]:
-        def figure(side: Json, unit: str) -> float:
-            return _mean(side[unit]) if joint is None else side[unit][joint]
+    def row(label: str, published: tuple[float, float], figure: Callable[[dict[str, float]], float]) -> list[str]:
+        ours = (figure(page[side]["mseStandardised"]) for side in _MPJPE_CM)
+        new = [f"{figure(held_out['test']['mseCm2']):.1f}"] if held_out else []
+        return [label, _together(published, 4), _together(ours, 4), *new]
 
-        ours = [f"{figure(page[side], 'mseStandardised'):.4f}" for side in sides]
-        ours += [f"{figure(page[side], 'mseCm2'):.2f}" for side in sides]
-        new = [f"{figure(held_out['test'], 'mseCm2'):.1f}"] if held_out else []
-        return [label, *(f"{value:.4f}" for value in published), *ours, *new]
-
-    head = ["MSE", "paper: train", "test", "ours, standardised: train", "test", "ours [cm²]: train", "test"]
-    rows = [row(label, _MSE[joint], joint) for joint, label in _JOINTS.items()]
-    rows.append(row("mean", (0.0277, 0.0448), None))
-    return table([*head, *(["people held out [cm²]"] if held_out else [])], rows)
+    rows = [row(label, _MSE[joint], itemgetter(joint)) for joint, label in _JOINTS.items()]
+    rows.append(row("mean", (0.0277, 0.0448), _mean))
+    return table(["MSE, train/test", "paper", "ours", *(["people held out [cm²]"] if held_out else [])], rows)
 
 
 def tables_2_and_3(page: Json, ik: Json, path: Json) -> str:
-    """Returns MSE and the right shoulder's MAE of both methods on test frames, and the MSE on the page's code path."""
-    rows = []
-    for method, figures in (("ik", ik), ("paper", page)):
-        rows.append(
-            [
-                "Final IK; ours: our own IK" if method == "ik" else "the network",
-                f"{_MSE_OF_METHODS[method]:.4f}",
-                f"{_mean(figures['test']['mseCm2']):.2f}",
-                f"{_RIGHT_SHOULDER_MAE[method]:.4f}",
-                f"{figures['test']['rightShoulderMaeCm']:.2f}",
-                f"{path['methods'][method]['mseCm2']:.1f}",
-                f"{path['methods'][method]['mpjpeCm']['mean']:.2f}",
-            ]
-        )
-    published = path["methods"]["paper-published"]
-    rows.append(
-        ["with section 3.5", *[""] * 4, f"{published['mseCm2']:.1f}", f"{published['mpjpeCm']['mean']:.2f}"]
-    )
+    """Returns MSE and the right shoulder's MAE of both methods on test frames, and errors on the page's code path."""
+
+    def new_people(method: str) -> list[str]:
+        measured = path["methods"][method]
+        return [f"{measured['mseCm2']:.1f}", f"{measured['mpjpeCm']['mean']:.2f}"]
+
+    rows = [
+        [
+            _METHODS[method],
+            f"{_MSE_OF_METHODS[method]:.4f}",
+            f"{_mean(figures['test']['mseCm2']):.2f}",
+            f"{_RIGHT_SHOULDER_MAE[method]:.4f}",
+            f"{figures['test']['rightShoulderMaeCm']:.2f}",
+            *new_people(method),
+        ]
+        for method, figures in (("ik", ik), ("paper", page))
+    ]
+    rows.append(["with section 3.5", *[""] * 4, *new_people("paper-published")])
     head = ["test frames", "MSE: paper", "ours [cm²]", "MAE of j7: paper", "ours [cm]"]
     return table([*head, "new people: MSE [cm²]", "MPJPE [cm]"], rows)
 
 
 def table_4(readings: dict[str, Json]) -> str:
     """Returns the MPJPE of every reading that was trained, nearest to the paper's first."""
-    rows = [["**the paper**", "22", "150", *(f"**{value:.2f}**" for value in _MPJPE_CM.values()), "0.0277", "0.0448"]]
+    rows = [["**the paper**", "22", f"**{_together(_MPJPE_CM.values(), 2)}**", "0.0448"]]
     for name in sorted(readings, key=lambda name: _distance_from_the_paper(readings[name])):
         reading = readings[name]
-        cells = [f"{reading['megabytes']:.0f}", f"{reading['iterations']}"]
-        cells += [f"{reading[side]['mpjpeCm']:.2f}" for side in _MPJPE_CM]
-        cells += [f"{_mean(reading[side]['mseStandardised']):.4f}" for side in _MPJPE_CM]
-        rows.append([LABELS[name], *cells])
-    head = ["reading", "MB", "batches an epoch", "MPJPE [cm]: train", "test", "MSE: train", "test"]
-    return table(head, rows)
+        errors = _together((reading[side]["mpjpeCm"] for side in _MPJPE_CM), 2)
+        mse = f"{_mean(reading['test']['mseStandardised']):.4f}"
+        rows.append([LABELS[name], f"{reading['megabytes']:.0f}", errors, mse])
+    return table(["reading", "MB", "MPJPE [cm], train/test", "MSE, test"], rows)
 
 
 def tables_5_and_6(path: Json) -> str:
     """Returns the times of a frame: the paper's, which include rendering, and those of our methods alone."""
-    rows = []
-    for method, label in _METHODS.items():
-        measured = path["methods"][method]["times"]
-        for number, times in enumerate(measured):
-            ours = (times[key] for key in ("minimum", "maximum", "average"))
-            cells = [f"{value:.2f}" for value in (*_TIMES[method][number], *ours)]
-            rows.append([f"{label}, table {5 + number}", *cells])
-    return table(["[ms]", "paper: least", "most", "mean", "ours: least", "most", "mean"], rows)
+    rows = [
+        [
+            f"{label}, table {5 + number}",
+            _together(published, 2),
+            _together((measured[key] for key in ("minimum", "average", "maximum")), 2),
+        ]
+        for method, label in _METHODS.items()
+        for number, (published, measured) in enumerate(
+            zip(_TIMES[method], path["methods"][method]["times"], strict=True)
+        )
+    ]
+    return table(["least/mean/most [ms]", "paper", "ours"], rows)
 
 
 def sections(readings: dict[str, Json], ik: Json | None, held_out: Json | None, path: Json) -> dict[str, str | None]:

@@ -4,7 +4,6 @@ A stage is a file of figures. A finished stage with the same options is not run 
 """
 
 import argparse
-import json
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
@@ -15,7 +14,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from . import estimate_hand_tilts, prepare, quaternion, train_learned, train_paper
+from . import prepare, train_learned, train_paper
 from .arrays import Array
 from .chest_features import chest_axes
 from .differentiable_kinematics import DifferentiableKinematics
@@ -55,16 +54,16 @@ class Reading:
 
 
 def _reading(iterations: int | None = None, shape: PaperShape = PaperShape(), **inputs: Any) -> Reading:
-    return Reading(TrainPaperConfig(iterations=iterations, shape=shape), PaperInputs(**inputs))
+    return Reading(TrainPaperConfig(iterations=iterations, shape=shape), PaperInputs(axes="room", **inputs))
 
 
-# `page` is the network of the page; each other reading differs from it in one thing, `literal` in all that a page can
-# do.
+# `page` is the network of the page, `room` the same with axes of the room; each other reading differs from `room` in
+# one thing, `literal` in all that a page can do.
 READINGS: dict[str, Reading] = {
-    "page": _reading(),
+    "page": Reading(),
+    "room": _reading(),
     "iterations": _reading(iterations=ITERATIONS),
     "joints": _reading(points="joints"),
-    "heading": _reading(axes="heading"),
     "parent": _reading(hands="parent"),
     "filtered": _reading(share_kept=SHARE_KEPT),
     "wide": _reading(shape=PaperShape(width=2304)),
@@ -85,7 +84,7 @@ class ReproductionConfig:
 
 
 def errors_by_side(differences: dict[str, Array], scale: Array | None) -> Json:
-    """Figures of differences [F, 18] [m] in the room's or the heading's axes, by side: squared errors by joint per
+    """Figures of differences [F, 18] [m] in the reading's axes, by side: squared errors by joint per
     coordinate, in cm² and of standardised coordinates (scale [18] [m]), absolute errors of the right shoulder, and the
     mean distance over a sample of frames.
     """
@@ -187,7 +186,7 @@ def measure_ik(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) -> Js
 
 
 def _ik_differences(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) -> Iterator[Array]:
-    """IK's joints minus the true ones [F, 18] of each clip, axes of the room [m]."""
+    """IK's joints minus the true ones [F, 18] of each clip, heading frame [m]."""
     kinematics = DifferentiableKinematics()
     for name, clip, tracked in train_paper.tracked_clips(corpus, people, seed):
         person = corpus.people[name]
@@ -197,10 +196,7 @@ def _ik_differences(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) 
         nothing = torch.zeros(len(inputs), OUTPUTS // 3, 3)
         fitted = kinematics(nothing, torch.from_numpy(inputs)).numpy().reshape(-1, 6, 3)
         from_truth = (fitted - clip_frames.targets.reshape(-1, 6, 3)) * clip_frames.eye_height[:, None, None]
-        in_heading = from_truth @ chest_axes(inputs[:, :FEATURES])
-        yaw = quaternion.heading(tracked[1][:, 0])
-        in_room = quaternion.rotate(np.broadcast_to(yaw[:, None], (*in_heading.shape[:2], 4)), in_heading)
-        yield in_room.reshape(-1, OUTPUTS)
+        yield (from_truth @ chest_axes(inputs[:, :FEATURES])).reshape(-1, OUTPUTS)
 
 
 # The options on which the figures of a stage depend, and its measurement.

@@ -70,7 +70,7 @@ def training_people(fold: str, subjects: tuple[str, ...] | list[str]) -> tuple[s
 
 def trained_on(network: str, people: tuple[str, ...]) -> tuple[str, ...]:
     """Which of `people` a network trains on: `learned` on all; `paper` on the VARIED subjects only, which lowers its
-    error.
+    error with axes of the room.
 
     Without any VARIED subject among them, as in other corpora, `paper` trains on all too.
     """

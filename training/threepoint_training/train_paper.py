@@ -45,7 +45,7 @@ class PaperInputs:
     """
 
     points: Literal["trackers", "joints"] = "trackers"
-    axes: Literal["room", "heading"] = "room"
+    axes: Literal["room", "heading"] = "heading"
     hands: Literal["axes", "parent"] = "axes"
     share_kept: float = 1.0
 
@@ -61,7 +61,7 @@ class LearningCurve:
 
 @dataclass(frozen=True)
 class PaperFrames:
-    """Inputs [F, 2, 3, 3], targets [F, 18] from the floor under the head, room axes [m]; the clip of each frame."""
+    """Inputs [F, 2, 3, 3], targets [F, 18] from the floor under the head [m]; the clip of each frame."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]

@@ -15,7 +15,7 @@ const tensor = v.object({
   shape: v.pipe(v.array(v.pipe(v.number(), v.integer(), v.minValue(1))), v.minLength(1)),
   meaning: v.string(),
   unit: v.string(),
-  frame: v.picklist(['floor', 'heading', 'chest']),
+  frame: v.picklist(['heading', 'chest']),
 });
 
 const contractSchema = v.object({

@@ -95,6 +95,12 @@ describe('a network that is not', () => {
     await expect(loadRegressor(`${await served(files)}/learned.json`)).rejects.toThrow(sentence);
   });
 
+  test('a model for features in the axes of the room', () => {
+    const [input] = contract.inputs as object[];
+    const inRoom = JSON.stringify({ ...contract, inputs: [{ ...input, frame: 'floor' }] });
+    expect(() => parseContract('paper.json', inRoom)).toThrow(/^paper\.json: inputs\.0\.frame: .*"floor"/);
+  });
+
   test('a contract that is no JSON, or lacks a field', () => {
     expect(() => parseContract('learned.json', '{')).toThrow(/^learned\.json: no valid JSON/);
     expect(() => parseContract('learned.json', JSON.stringify({ ...contract, sha256: 'abc' }))).toThrow(

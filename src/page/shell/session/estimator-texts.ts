@@ -28,7 +28,7 @@ export const estimatorTexts: Readonly<Record<EstimatorName, EstimatorText>> = {
   },
   'paper-published': {
     label: 'Paper as published',
-    text: 'For comparison: with the bones of the study of Anvari, Park and Kim (2023), too.',
+    text: 'For comparison: the whole method of Anvari, Park and Kim (2023).',
     details: 'The joints of Paper, with the orientations of the paper’s section 3.5: no fit, no filters.',
   },
   'hands-only': {

@@ -32,7 +32,7 @@ describe.each(['paper', 'learned'] as const)('the shipped %s model', (name) => {
     const window = contract.windowSeconds;
     expect(size(contract.inputs[0]!.shape)).toBe(name === 'paper' ? 18 : learnedInputCount(window));
     expect(size(contract.outputs[0]!.shape)).toBe(3 * estimatedJoints.length);
-    expect(contract.inputs[0]!.frame).toBe(name === 'paper' ? 'floor' : 'heading');
-    expect(contract.outputs[0]!.frame).toBe(name === 'paper' ? 'floor' : 'chest');
+    expect(contract.inputs[0]!.frame).toBe('heading');
+    expect(contract.outputs[0]!.frame).toBe(name === 'paper' ? 'heading' : 'chest');
   });
 });

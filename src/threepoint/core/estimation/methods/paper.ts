@@ -1,7 +1,8 @@
 import { estimatedJoints } from '../../body/joints';
-import type { Pose } from '../../math/pose';
+import { invertTransform, makePose, makeTransform, type Pose, transformPoint, transformPose } from '../../math/pose';
 import { toEulerYxz } from '../../math/quat';
 import { setVec3, type Vec3, vec3 } from '../../math/vec3';
+import { floorFromHeading } from '../../tracking/heading';
 import { type MutableJointPositions, makeJoints, transformJoints } from '../joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from '../joint-source';
 import { LatestResult } from '../networks/latest-result';
@@ -10,6 +11,9 @@ import type { PoseRegressor } from '../networks/pose-regressor';
 /** The number of features: two quantities of three components for three points. */
 const paperFeatureCount = 18;
 
+const floorFromHead = makeTransform<'floor', 'heading'>();
+const headFromFloor = makeTransform<'heading', 'floor'>();
+const inHeading = makePose<'heading'>();
 const angles = vec3(0, 0, 0);
 
 function write(target: Float32Array, start: number, { x, y, z }: Vec3): void {
@@ -18,16 +22,15 @@ function write(target: Float32Array, start: number, { x, y, z }: Vec3): void {
   target[start + 6] = z;
 }
 
-function writePoint(target: Float32Array, column: number, { position, orientation }: Pose<'floor'>, head: Vec3): void {
-  write(target, column, position);
-  target[column] = position.x - head.x;
-  target[column + 6] = position.z - head.z;
-  write(target, 9 + column, toEulerYxz(orientation, angles));
+function writePoint(target: Float32Array, column: number, point: Pose<'floor'>): void {
+  transformPose(headFromFloor, point, inHeading);
+  write(target, column, inHeading.position);
+  write(target, 9 + column, toEulerYxz(inHeading.orientation, angles));
 }
 
 /**
- * Writes the paper's input [1, 2, 3, 3]: depth (position [m] relative to the floor point under the headset, axes of the
- * room; Euler angles [rad]), row (x, y, z), column (head, left, right).
+ * Writes the paper's input [1, 2, 3, 3], heading frame: depth (position [m]; Euler angles [rad]), row (x, y, z), column
+ * (head, left, right).
  */
 export function paperFeatures(
   head: Pose<'floor'>,
@@ -35,15 +38,16 @@ export function paperFeatures(
   rightHand: Pose<'floor'>,
   target: Float32Array = new Float32Array(paperFeatureCount),
 ): Float32Array {
-  writePoint(target, 0, head, head.position);
-  writePoint(target, 1, leftHand, head.position);
-  writePoint(target, 2, rightHand, head.position);
+  invertTransform(floorFromHeading(head, floorFromHead), headFromFloor);
+  writePoint(target, 0, head);
+  writePoint(target, 1, leftHand);
+  writePoint(target, 2, rightHand);
   return target;
 }
 
 /**
- * Creates a source with the paper's network as published: positions in the room's axes and Euler angles in, six joints
- * out. Inverse kinematics supplies the joints before its first result.
+ * Creates a source with the paper's network: positions and Euler angles in, six joints out, in axes that turn with the
+ * head. Inverse kinematics supplies the joints before its first result.
  */
 export function createPaper(regressor: PoseRegressor): JointSource {
   const input = new Float32Array(paperFeatureCount);
@@ -59,24 +63,21 @@ export function createPaper(regressor: PoseRegressor): JointSource {
     },
   );
 
-  /**
-   * Writes the joints [m] of a result relative to the floor point under the current headset: a result for an older
-   * frame moves with the head.
-   */
-  function place(output: Float32Array, { completed }: SolvedFrame, target: MutableJointPositions): void {
-    const { x, z } = completed.head.position;
+  /** Writes the joints [m] of a result, floor frame: a result for an older frame moves and turns with the head. */
+  function place(output: Float32Array, solved: SolvedFrame, target: MutableJointPositions): void {
     for (let index = 0; index < estimatedJoints.length; index++) {
-      const at = 3 * index;
-      setVec3(target[estimatedJoints[index]!], x + output[at]!, output[at + 1]!, z + output[at + 2]!);
+      const joint = target[estimatedJoints[index]!];
+      setVec3(joint, output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
+      transformPoint(solved.floorFromHeading, joint, joint);
     }
   }
 
   const network: JointNetwork = {
     // Its joints are not filtered, so that each frame needs a result of its own.
     wantsFrames: true,
-    ask({ completed }) {
+    ask({ trackers: { head, leftHand, rightHand } }) {
       if (inference.running) return inference.running;
-      return inference.start(paperFeatures(completed.head, completed.leftHand, completed.rightHand, input));
+      return inference.start(paperFeatures(head.value, leftHand.value, rightHand.value, input));
     },
     answer(solved) {
       if (newest === null) return null;

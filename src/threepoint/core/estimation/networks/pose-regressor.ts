@@ -7,7 +7,7 @@ interface TensorContract {
   /** 'm', 'rad', '1' or a ratio such as 'eyeHeight'. */
   readonly unit: string;
   /** The frame of the numbers. chest: IK's chest in the newest frame. */
-  readonly frame: 'floor' | 'heading' | 'chest';
+  readonly frame: 'heading' | 'chest';
 }
 
 /**
