@@ -10,24 +10,18 @@ interface Description {
   readonly images?: readonly { readonly bufferView?: number }[];
 }
 
-/** The largest chunk that is read at once [bytes]: each part of a Blob that is read is a message between processes. */
-const smallChunk = 2 ** 20;
-
 const isPacked = (extension: string): boolean => extension.endsWith('meshopt_compression');
 
 /**
  * Reads the buffer views of a GLB from its binary chunk: meshes are read one by one, images are slices of the Blob,
  * which the browser decodes on another thread. GLTFLoader copies the whole chunk, and each image twice, on the page's
- * thread. A small chunk is read at once.
+ * thread.
  */
 export const blobBufferViews =
   (binary: Blob) =>
   (parser: GLTFParser): GLTFLoaderPlugin => {
     const { bufferViews = [], images = [] } = parser.json as Description;
     const pictures = new Set(images.map(({ bufferView }) => bufferView));
-    const bytes = binary.size <= smallChunk ? binary.arrayBuffer() : null;
-    const read = async (from: number, to: number) =>
-      (await bytes)?.slice(from, to) ?? binary.slice(from, to).arrayBuffer();
     return {
       name: 'threepoint_views',
       beforeRoot() {
@@ -45,10 +39,10 @@ export const blobBufferViews =
         const view = bufferViews[index];
         if (!view || Object.keys(view.extensions ?? {}).some(isPacked)) return null;
         const from = view.byteOffset ?? 0;
-        const to = from + view.byteLength;
-        if (!pictures.has(index)) return read(from, to);
+        const part = binary.slice(from, from + view.byteLength);
+        if (!pictures.has(index)) return part.arrayBuffer();
         // reason: GLTFLoader passes a picture's view to a new Blob, which accepts a Blob; the types allow bytes only.
-        return Promise.resolve(binary.slice(from, to) as unknown as ArrayBuffer);
+        return Promise.resolve(part as unknown as ArrayBuffer);
       },
     };
   };
