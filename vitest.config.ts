@@ -2,8 +2,16 @@ import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
 import { isNightly } from './tests/nightly.ts';
 import { thirdGame } from './tests/page/third-game/added-lines.ts';
 
-/** Tests that count allocations have a process of their own, because compiled code depends on what ran before. */
-const apart = ['tests/page/shell/panels/headset-controls.test.ts', 'tests/ui/vr-touch.test.ts'];
+/**
+ * Tests in processes of their own: those that count allocations, because compiled code depends on what ran before, and
+ * those that collect garbage, because that takes half a second in the heap of many files.
+ */
+const apart = [
+  'tests/page/shell/panels/headset-controls.test.ts',
+  'tests/rooms/drawing/room-avatar-loader.test.ts',
+  'tests/threepoint/avatar/mutated-fbx.test.ts',
+  'tests/ui/vr-touch.test.ts',
+];
 
 /** Tests with a third game in the registries. */
 const withThirdGame = ['page/third-game/*', 'server/third-game', 'study/third-game'].map(
