@@ -24,6 +24,7 @@ import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
+import type { ClothWeave } from './rig/cloth-weave';
 import { mergeFlatParts } from './rig/flat-parts';
 import { tieLooseParts } from './rig/loose-parts';
 import { type AvatarJoint, Rig } from './rig/rig';
@@ -61,10 +62,11 @@ export interface Avatar {
   /** Recolours the skin of the project's own people; null: unchanged. */
   setSkinTone(tone: SkinTone | null): void;
   /**
-   * Draws the weave of the clothes of the project's own people, which is visible from about 1.2 m on; default: smooth
-   * cloth. It is computed in the program that draws them, and costs time for each pixel. Other avatars stay unchanged.
+   * Draws the clothes of the project's own people with a weave (`weaveCloth`), which is visible from about 1.2 m on;
+   * null: smooth, as at first. It is computed in the program that draws them, and costs time for each pixel. Other
+   * avatars stay unchanged.
    */
-  setClothWeave(on: boolean): void;
+  setClothWeave(weave: ClothWeave | null): void;
   /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
   setOpacity(opacity: number): void;
   /**
@@ -315,8 +317,8 @@ class VrmAvatar implements Avatar {
     this.meshes.setSkinTone(tone);
   }
 
-  setClothWeave(on: boolean): void {
-    this.meshes.setClothWeave(on);
+  setClothWeave(weave: ClothWeave | null): void {
+    this.meshes.setClothWeave(weave);
   }
 
   setOpacity(opacity: number): void {

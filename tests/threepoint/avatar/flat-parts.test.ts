@@ -63,9 +63,9 @@ test('the weave marks the clothes of a person, and nothing of the mannequin', as
 test('the weave is part of a program only while it is on', () => {
   const material = new FlatPartsMaterial([new MeshStandardMaterial(), new MeshStandardMaterial()]);
   const smooth = material.customProgramCacheKey();
-  material.setClothWeave(true);
+  material.setClothWeave(weaveCloth);
   expect(material.customProgramCacheKey()).not.toBe(smooth);
-  material.setClothWeave(false);
+  material.setClothWeave(null);
   expect(material.customProgramCacheKey()).toBe(smooth);
 });
 

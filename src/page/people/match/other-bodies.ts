@@ -1,6 +1,6 @@
 import { type BuiltInBody, defaultAvatar } from 'threepoint/core';
 import { checkInWorker, loadUntrustedAvatar, parseAvatar } from 'threepoint/files';
-import { type Avatar, createAvatarBetweenFrames } from 'threepoint/three';
+import { type Avatar, createAvatarBetweenFrames, weaveCloth } from 'threepoint/three';
 import type { AvatarExchange, RoomClient } from 'threepoint-rooms';
 import type { HostedGame } from 'threepoint-rooms/room';
 import { RoomBodies } from 'threepoint-rooms/three';
@@ -65,7 +65,7 @@ export function createOtherBodies({ context, exchange, mannequin, play, voices }
     onRefused: (text) => notices.show('info', text),
     async loadBuiltIn(body) {
       const loaded = await builtIn.load(body);
-      loaded.setClothWeave(context.quality === 'high');
+      loaded.setClothWeave(context.quality === 'high' ? weaveCloth : null);
       return loaded;
     },
     loadFile: (bytes) => loadUntrustedAvatar(bytes, 'the avatar', { check: checkInWorker, decoders }),

@@ -1,6 +1,6 @@
 import type { Object3D } from 'three';
 import { type AvatarPose, estimatorNames, firstLine, reasonOf, recordOf, type TrackingFrame } from 'threepoint/core';
-import { type Avatar, palettes } from 'threepoint/three';
+import { type Avatar, palettes, weaveCloth } from 'threepoint/three';
 import { pageElement } from 'threepoint-ui';
 import type { MocapView } from '../../mocap/mocap-view';
 import type { ClipView } from '../../mocap/motion-bones';
@@ -91,7 +91,7 @@ export class LazyMocap {
     const { quality, settings } = this.#parts;
     const { builtInBody, palette } = settings;
     const avatar = await buildBuiltIn(builtInBody);
-    avatar.setClothWeave(quality === 'high');
+    avatar.setClothWeave(quality === 'high' ? weaveCloth : null);
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
     await this.#prepare(avatar.object);
     return avatar;

@@ -9,7 +9,7 @@ import {
   UnknownBonesError,
 } from 'threepoint/core';
 import { type CheckedAvatar, MotionOnlyError } from 'threepoint/files';
-import { type Avatar, bodyLabelOf } from 'threepoint/three';
+import { type Avatar, bodyLabelOf, weaveCloth } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
 import { fileNameOf } from 'threepoint-ui';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
@@ -294,7 +294,7 @@ export class UserAvatar {
     this.recolour();
     if (typeof state.worn === 'string') {
       avatar.setSkinTone(skinToneOf(state.worn));
-      avatar.setClothWeave(quality === 'high');
+      avatar.setClothWeave(quality === 'high' ? weaveCloth : null);
     }
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
   }

@@ -14,6 +14,7 @@ import { recordOf } from '../../core/records';
 import type { Steps } from '../between-frames';
 import { palettes, skinColors } from '../palettes';
 import { meshesOf } from '../scene-meshes';
+import type { ClothWeave } from './cloth-weave';
 import { FlatPartsMaterial } from './flat-parts';
 import type { Rig } from './rig';
 import { type SkinPart, skinParts, sortByPart } from './skin-parts';
@@ -185,10 +186,11 @@ export class BodyMeshes {
     if (tone) this.recolour({ Skin: skinColors[tone] });
   }
 
-  /** Draws the weave of the cloth of this project's people, or leaves it smooth. */
-  setClothWeave(on: boolean): void {
+  /** Draws the cloth of this project's people with this weave; null: smooth. */
+  setClothWeave(weave: ClothWeave | null): void {
     for (const { mesh } of this.meshes)
-      for (const material of materialsOf(mesh)) if (material instanceof FlatPartsMaterial) material.setClothWeave(on);
+      for (const material of materialsOf(mesh))
+        if (material instanceof FlatPartsMaterial) material.setClothWeave(weave);
   }
 
   private recolour(colors: Readonly<Record<string, string>>): void {

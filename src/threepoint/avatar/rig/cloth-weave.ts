@@ -1,5 +1,8 @@
 import type { WebGLProgramParametersWithUniforms } from 'three';
 
+/** Extends the program of a material that is about to be compiled. */
+export type ClothWeave = (shader: Pick<WebGLProgramParametersWithUniforms, 'vertexShader' | 'fragmentShader'>) => void;
+
 /** The weave of the materials of the project's own people, as the red channel of their surfaces; others have 0. */
 export const weaves: Readonly<Record<string, number>> = { Top: 1, Bottom: 0.5 };
 
@@ -65,10 +68,10 @@ const after = (shader: string, chunk: string, added: string): string => {
   return shader.replace(include, `${include}\n${added}`);
 };
 
-/** Extends the program of a material whose roughness map has weaves: it draws cloth without a texture of it. */
-export function weaveCloth(shader: Pick<WebGLProgramParametersWithUniforms, 'vertexShader' | 'fragmentShader'>): void {
+/** Draws the weave of cloth without a texture of it: a knit and a twill. */
+export const weaveCloth: ClothWeave = (shader) => {
   const passRest = 'vRestPosition = position;\nvRestNormal = normal;';
   shader.vertexShader = after(after(shader.vertexShader, 'common', restVaryings), 'begin_vertex', passRest);
   const inFragment = after(shader.fragmentShader, 'common', restVaryings + clothHeight);
   shader.fragmentShader = after(inFragment, 'normal_fragment_maps', bendNormals);
-}
+};

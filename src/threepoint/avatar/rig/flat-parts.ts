@@ -13,7 +13,7 @@ import {
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js';
 import type { Steps } from '../between-frames';
 import { skinnedMeshesOf } from '../scene-meshes';
-import { weaveCloth, weaves } from './cloth-weave';
+import { type ClothWeave, weaves } from './cloth-weave';
 
 type FlatMesh = SkinnedMesh<BufferGeometry, MeshStandardMaterial>;
 
@@ -61,9 +61,9 @@ export class FlatPartsMaterial extends MeshStandardMaterial {
     this.metalnessMap = surfaces;
   }
 
-  /** Draws the weave of the cloth of the project's own people, or leaves their cloth smooth, as it is at first. */
-  setClothWeave(on: boolean): void {
-    this.onBeforeCompile = on ? weaveCloth : super.onBeforeCompile;
+  /** Draws the cloth of the project's own people with this weave; null: smooth, as it is at first. */
+  setClothWeave(weave: ClothWeave | null): void {
+    this.onBeforeCompile = weave ?? super.onBeforeCompile;
     this.needsUpdate = true;
   }
 
