@@ -130,10 +130,8 @@ describe('an export', () => {
     for (const name of ['participants', 'answers', 'scales', 'trials', 'frame-times', 'hits', 'pauses', 'events']) {
       const rows = await tableOf(server, name);
       const authorOf = (text?: string) => (text === 'of the experimenter' ? 'experimenter' : 'participant');
-      expect(
-        rows.filter(({ author, text }) => author !== authorOf(text)),
-        name,
-      ).toEqual([]);
+      const wrong = rows.filter(({ author, text }) => author !== authorOf(text));
+      expect(wrong, name).toEqual([]);
     }
     const { records: kept } = (await ask('GET', own('records'), { token: experimenter })).json;
     expect(kept.at(-1)).toMatchObject({ author: 'experimenter', receivedAt: now });
