@@ -70,23 +70,15 @@ export function windowFeatures(frames: readonly TrackedPoints[], calibration: Ca
 function createWindowSource(calibration: Calibration, regressor: PoseRegressor): JointSource {
   const frames: TrackedPoints[] = [];
   const answered = makeJoints();
-  let newest: Float32Array | null = null;
-  const inference = new LatestResult(
-    regressor,
-    (output) => {
-      newest = output;
-    },
-    () => {
-      newest = null;
-    },
-  );
+  const inference = new LatestResult(regressor);
 
   /** Returns the joints of the newest result in the heading of this frame; null: there is none. */
   function answer({ completed }: SolvedFrame) {
-    if (newest === null) return null;
+    const { output } = inference;
+    if (output === null) return null;
     const inHeading = makeJoints();
     for (const [index, joint] of estimatedJoints.entries()) {
-      const [x, y, z] = newest.subarray(3 * index);
+      const [x, y, z] = output.subarray(3 * index);
       setVec3(inHeading[joint], x! * calibration.eyeHeight, y! * calibration.eyeHeight, z! * calibration.eyeHeight);
     }
     return transformJoints(floorFromHeading(completed.head), inHeading, answered);
@@ -105,7 +97,6 @@ function createWindowSource(calibration: Calibration, regressor: PoseRegressor):
     reset() {
       inference.reset();
       frames.length = 0;
-      newest = null;
     },
     joints(solved, _, target) {
       const { head, leftHand, rightHand } = solved.completed;

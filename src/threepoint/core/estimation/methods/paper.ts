@@ -52,16 +52,7 @@ export function paperFeatures(
 export function createPaper(regressor: PoseRegressor): JointSource {
   const input = new Float32Array(paperFeatureCount);
   const answered = makeJoints();
-  let newest: Float32Array | null = null;
-  const inference = new LatestResult(
-    regressor,
-    (output) => {
-      newest = output;
-    },
-    () => {
-      newest = null;
-    },
-  );
+  const inference = new LatestResult(regressor);
 
   /** Writes the joints [m] of a result, floor frame: a result for an older frame moves and turns with the head. */
   function place(output: Float32Array, solved: SolvedFrame, target: MutableJointPositions): void {
@@ -80,8 +71,8 @@ export function createPaper(regressor: PoseRegressor): JointSource {
       return inference.start(paperFeatures(head.value, leftHand.value, rightHand.value, input));
     },
     answer(solved) {
-      if (newest === null) return null;
-      place(newest, solved, answered);
+      if (inference.output === null) return null;
+      place(inference.output, solved, answered);
       return answered;
     },
     get fault() {
@@ -92,12 +83,9 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   return {
     network,
     calibrate: () => undefined,
-    reset() {
-      inference.reset();
-      newest = null;
-    },
+    reset: () => inference.reset(),
     joints(solved, _, target) {
-      if (newest) place(newest, solved, target);
+      if (inference.output) place(inference.output, solved, target);
       else transformJoints(solved.floorFromHeading, solved.ik.joints, target);
     },
   };

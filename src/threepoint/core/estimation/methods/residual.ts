@@ -33,14 +33,12 @@ class Residual implements JointSource, JointNetwork {
   readonly #window: FeatureWindow;
   readonly #input: Float32Array;
   readonly #seen = { left: false, right: false };
-  /** The newest residual, and its low-pass [m], chest frame. */
+  /** The newest residual, zero without a result, and its low-pass [m], chest frame. */
   readonly #newest = makeJoints();
   readonly #damped = makeJoints();
   readonly #answered = makeJoints();
   readonly #inference: LatestResult;
   #body: ChestSpaceBody;
-  /** Whether `newest` is a result of the network. */
-  #known = false;
 
   constructor(calibration: Calibration, regressor: PoseRegressor) {
     const { windowSeconds } = regressor.contract;
@@ -48,11 +46,7 @@ class Residual implements JointSource, JointNetwork {
     this.#body = chestSpaceBody(calibration);
     this.#window = new FeatureWindow(Math.max(...windowSeconds));
     this.#input = new Float32Array(learnedInputCount(windowSeconds));
-    this.#inference = new LatestResult(
-      regressor,
-      (output) => this.#storeResult(output),
-      () => this.#clear(),
-    );
+    this.#inference = new LatestResult(regressor);
   }
 
   get network(): JointNetwork {
@@ -71,7 +65,6 @@ class Residual implements JointSource, JointNetwork {
   reset(): void {
     this.#window.clear();
     this.#inference.reset();
-    this.#clear();
     copyJoints(nothing, this.#damped);
   }
 
@@ -87,8 +80,9 @@ class Residual implements JointSource, JointNetwork {
   }
 
   answer({ ik, floorFromHeading }: SolvedFrame): MutableJointPositions | null {
-    if (!this.#known) return null;
+    if (!this.#inference.output) return null;
     const answered = this.#answered;
+    this.#readResult();
     for (const joint of estimatedJoints) {
       headingFromChest(ik.chest, this.#newest[joint], answered[joint]);
       transformPoint(floorFromHeading, add(ik.joints[joint], answered[joint], answered[joint]), answered[joint]);
@@ -102,6 +96,7 @@ class Residual implements JointSource, JointNetwork {
       this.#fillInput(solved);
       this.#inference.answerNow(this.#input);
     }
+    this.#readResult();
     const { ik, floorFromHeading } = solved;
     // Without a result the correction fades to zero.
     const fraction = smoothingFactor(correctionHalfLife, deltaSeconds);
@@ -129,18 +124,17 @@ class Residual implements JointSource, JointNetwork {
     chestFeatures(points, ik, this.#body, input, windowSeconds.length * featureCount);
   }
 
-  #storeResult(output: Float32Array): void {
+  #readResult(): void {
+    const { output } = this.#inference;
+    if (!output) {
+      copyJoints(nothing, this.#newest);
+      return;
+    }
     for (let index = 0; index < estimatedJoints.length; index++) {
       const residual = this.#newest[estimatedJoints[index]!];
       setVec3(residual, output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
       scale(residual, this.#body.eyeHeight, residual);
     }
-    this.#known = true;
-  }
-
-  #clear(): void {
-    copyJoints(nothing, this.#newest);
-    this.#known = false;
   }
 }
 

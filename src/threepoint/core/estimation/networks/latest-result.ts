@@ -3,23 +3,26 @@ import { allFinite } from '../../math/all-finite';
 import type { PoseRegressor } from './pose-regressor';
 
 /**
- * Runs a regressor one run at a time and passes on each finished result; errors are stored in `fault`, never thrown.
+ * Runs a regressor one run at a time and keeps its newest result; errors are stored in `fault`, never thrown.
  */
 export class LatestResult {
   readonly #regressor: PoseRegressor;
-  readonly #outputs: number;
-  readonly #finished: (output: Float32Array) => void;
-  readonly #failed: () => void;
+  /** A copy: `runNow` overwrites its result in the next run, which may be another body's. */
+  readonly #output: Float32Array;
+  #isValid = false;
   #running: Promise<void> | null = null;
   #fault: string | null = null;
   #epoch = 0;
 
-  /** `finished` is called with each valid result; `failed` when a run failed, which invalidates earlier results. */
-  constructor(regressor: PoseRegressor, finished: (output: Float32Array) => void, failed: () => void) {
+  constructor(regressor: PoseRegressor) {
     this.#regressor = regressor;
-    this.#outputs = regressor.contract.outputs[0]?.shape.reduce((product, size) => product * size, 1) ?? 0;
-    this.#finished = finished;
-    this.#failed = failed;
+    const [outputs] = regressor.contract.outputs;
+    this.#output = new Float32Array(outputs?.shape.reduce((product, size) => product * size, 1) ?? 0);
+  }
+
+  /** The newest valid result; null: there is none, or a run has failed since. */
+  get output(): Float32Array | null {
+    return this.#isValid ? this.#output : null;
   }
 
   /** The current run; no other may be started before it settles. */
@@ -49,8 +52,9 @@ export class LatestResult {
     }
   }
 
-  /** Discards the result of the current run. */
+  /** Discards the newest result and that of the current run. */
   reset(): void {
+    this.#isValid = false;
     this.#epoch += 1;
   }
 
@@ -65,16 +69,17 @@ export class LatestResult {
   }
 
   #finish(output: Float32Array): void {
-    if (output.length !== this.#outputs) {
-      throw new Error(`${output.length} numbers came out, the contract says ${this.#outputs}`);
+    if (output.length !== this.#output.length) {
+      throw new Error(`${output.length} numbers came out, the contract says ${this.#output.length}`);
     }
     if (!allFinite(output)) throw new Error('the output has numbers that are not finite');
-    this.#finished(output);
+    this.#output.set(output);
+    this.#isValid = true;
     this.#fault = null;
   }
 
   #fail(error: unknown): void {
-    this.#failed();
+    this.#isValid = false;
     this.#fault = `${this.#regressor.contract.name}: ${reasonOf(error)}`;
   }
 }
