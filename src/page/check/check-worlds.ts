@@ -65,14 +65,13 @@ function contextOf({ quality, clock, mannequin, onProblem }: CheckWorldsOptions)
     study: { run: null },
     onCaption: ignore,
     onChange: ignore,
-    layout: { seed: layoutSeed },
     place: null,
     inputSource: 'headset',
     chooseInput: ignore,
     setSound: ignore,
     reopen: ignore,
     placeCamera: ignore,
-  } satisfies Omit<ActivityContext, 'stage' | 'gazeTargets'>;
+  } satisfies Omit<ActivityContext, 'stage' | 'gazeTargets' | 'layout'>;
 }
 
 /** Enters an activity as the page does, in a scene of its own. */
@@ -92,7 +91,12 @@ async function openActivity(activity: Activity, context: ReturnType<typeof conte
   };
   const { gazeTargets } = host;
   return Object.assign(host, {
-    activity: await activity.load({ ...context, stage: { studio: host, view }, gazeTargets }),
+    activity: await activity.load({
+      ...context,
+      layout: { seed: layoutSeed },
+      stage: { studio: host, view },
+      gazeTargets,
+    }),
   });
 }
 
