@@ -258,7 +258,8 @@ def main(corpus: PreparedCorpus, config: BoardConfig, report: Report = print) ->
         if read_stage(file, budget, report) is not None:
             report(f"{file.stem}: finished before")
             continue
-        for side, who in () if sides else (("training", people), ("validation", config.validation)):
-            sides[side] = BodyParts(corpus, who, config.augment.balance)
+        if not sides:
+            who = {"training": people, "validation": config.validation}
+            sides = {side: BodyParts(corpus, names, config.augment.balance) for side, names in who.items()}
         write_stage(file, budget, _train(name, config, own, sides, file, report))
     return folder
