@@ -108,7 +108,7 @@ export async function runTraining(module, args, { extras = [], ...options } = {}
 }
 
 /**
- * Returns the people of a folder of motion capture whom the report measures: those of its tables, those whom the page's
+ * Returns the people of a folder of motion capture that the report measures: those of its tables, those that the page's
  * paper network was not trained on, and those of another laboratory.
  */
 export async function reportPeople(mocap) {
