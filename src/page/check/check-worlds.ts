@@ -89,15 +89,8 @@ async function openActivity(activity: Activity, context: ReturnType<typeof conte
     pose: head,
     rayThrough: () => ({ origin: head.position, direction: rotate(head.orientation, forward) }),
   };
-  const { gazeTargets } = host;
-  return Object.assign(host, {
-    activity: await activity.load({
-      ...context,
-      layout: { seed: layoutSeed },
-      stage: { studio: host, view },
-      gazeTargets,
-    }),
-  });
+  const own = { layout: { seed: layoutSeed }, stage: { studio: host, view }, gazeTargets: host.gazeTargets };
+  return Object.assign(host, { activity: await activity.load({ ...context, ...own }) });
 }
 
 /** The worlds of the page: the mirror, and every activity of the registry. */
