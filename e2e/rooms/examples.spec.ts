@@ -186,6 +186,7 @@ class Meeting {
     expect(before).toEqual(expect.any(Number));
     await this.ben.page.reload();
     this.ben = { ...this.ben, headset: await enterExample(this.ben.page, placements.Ben!) };
+    await expect.poll(seat, { message: 'Ben has a seat again' }).toEqual(expect.any(Number));
     expect(await seat()).toBe(before);
     await this.seeEachOther();
     expect(await this.ann.page.evaluate(() => window.room?.others.people.map(({ name }) => name))).toEqual(['Ben']);
