@@ -1,7 +1,6 @@
 import { recordOf } from 'threepoint/core';
 import { add, cross, distance, dot, length, normalise, scale, subtract, up, type Vec3, vec3 } from 'threepoint/math';
-import { mean } from '../../src/threepoint/core/math/statistics';
-import { type DrivenMethod, type MeasuredMethod, measuredMethods } from './drive';
+import type { DrivenMethod } from './drive';
 import { jointOf, type MeasuredFrame, rounded } from './measures';
 import { type TruthJoint, truthJoints } from './recordings';
 
@@ -72,45 +71,15 @@ export interface PictureOfMotion {
   readonly bodies: Readonly<Record<'truth', Points> & Partial<Record<DrivenMethod, Points>>>;
 }
 
-/** Error of the right shoulder [cm] over a clip: the one whose error is the median of all. */
-export interface Trace {
-  readonly clip: string;
-  readonly rateHz: number;
-  readonly rightShoulderCm: Readonly<Record<MeasuredMethod, readonly number[]>>;
-}
+/** The picture most like each motion so far. */
+export type Pictures = Map<Motion, PictureOfMotion>;
 
-export interface Figures {
-  readonly trace: Trace | null;
-  readonly poses: readonly PictureOfMotion[];
-}
-
-/** Collects what the figures of docs/accuracy.md show; add clip by clip. */
-export interface FigureCollection {
-  readonly traces: { readonly clip: string; readonly errors: Record<MeasuredMethod, number[]> }[];
-  readonly poses: Map<Motion, PictureOfMotion>;
-}
-
-export const emptyCollection = (): FigureCollection => ({ traces: [], poses: new Map() });
-
-type Driven = Readonly<Record<MeasuredMethod, readonly MeasuredFrame[]>>;
 type Pictured = Readonly<
   Record<'ik', readonly MeasuredFrame[]> & Partial<Record<DrivenMethod, readonly MeasuredFrame[]>>
 >;
 
-export function addFigures(collection: FigureCollection, clip: string, driven: Driven, rateHz: number): void {
-  const errors = (name: MeasuredMethod): number[] =>
-    driven[name].map(({ joints, truth }) =>
-      rounded(distance(jointOf(joints, 'rightUpperArm'), truth.rightUpperArm) * 100, 2),
-    );
-  collection.traces.push({
-    clip,
-    errors: recordOf(measuredMethods, errors),
-  });
-  addPictures(collection.poses, clip, driven, rateHz);
-}
-
 /** Replaces each picture for which this clip has a pose more like its motion; `driven`: IK and any other methods. */
-export function addPictures(pictures: FigureCollection['poses'], clip: string, driven: Pictured, rateHz: number): void {
+export function addPictures(pictures: Pictures, clip: string, driven: Pictured, rateHz: number): void {
   for (const motion of motions) {
     let least = pictures.get(motion)?.unlikeness ?? Number.POSITIVE_INFINITY;
     let best: number | null = null;
@@ -142,15 +111,6 @@ function bodiesAt(driven: Pictured, row: number): PictureOfMotion['bodies'] {
   };
 }
 
-export function figuresOf({ traces, poses }: FigureCollection, rateHz: number): Figures {
-  // Short clips contain little information about an error over time.
-  const long = traces.filter(({ errors }) => errors.learned.length >= 5 * rateHz);
-  const sorted = [...(long.length > 0 ? long : traces)].sort(
-    (a, b) => mean(a.errors.learned) - mean(b.errors.learned) || (a.clip < b.clip ? -1 : 1),
-  );
-  const median = sorted[Math.floor((sorted.length - 1) / 2)];
-  return {
-    trace: median ? { clip: median.clip, rateHz, rightShoulderCm: median.errors } : null,
-    poses: motions.flatMap((motion) => poses.get(motion) ?? []),
-  };
-}
+/** The pictures there are, in the order of the motions. */
+export const inOrder = (pictures: Pictures): readonly PictureOfMotion[] =>
+  motions.flatMap((motion) => pictures.get(motion) ?? []);

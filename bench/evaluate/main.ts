@@ -4,7 +4,7 @@ import { doubtOfErrors } from 'threepoint/motion';
 import { readCheckFile, trackingOf } from './checked-headset';
 import { type DeviceTracking, usualTracking } from './disturbances';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
-import { addFigures, emptyCollection, figuresOf } from './figures';
+import { addPictures, inOrder, type Pictures } from './figures';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, merge, type Report, report } from './measures';
 import { loadRegressors } from './networks';
 import { calibrationOf, peopleOf, type RecordingIndex, readClip, readIndex } from './recordings';
@@ -62,7 +62,7 @@ async function readCorpus(recordings: string, models: string, fp32: string | und
 interface Measured {
   readonly byPerson: ReadonlyMap<string, Record<MeasuredMethod, Measures>>;
   readonly exact: ReadonlyMap<MeasuredMethod, Measures>;
-  readonly collection: ReturnType<typeof emptyCollection>;
+  readonly pictures: Pictures;
   readonly frames: number;
 }
 
@@ -71,7 +71,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
   const { recordings, index, regressors, exactRegressors, judged } = corpus;
   const byPerson = new Map<string, Record<MeasuredMethod, Measures>>();
   const exact = new Map<MeasuredMethod, Measures>();
-  const collection = emptyCollection();
+  const pictures: Pictures = new Map();
   const total = index.clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
   for (const clip of index.clips) {
@@ -85,7 +85,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
       addClip(person[name], driven[name], index.rateHz);
     }
     if (judged.includes(clip)) {
-      if (options.figures) addFigures(collection, clip.name, driven, index.rateHz);
+      if (options.figures) addPictures(pictures, clip.name, driven, index.rateHz);
       for (const [name, regressor] of exactRegressors ?? []) {
         const measures = exact.get(name) ?? emptyMeasures();
         addClip(measures, await drive(name, calibration, regressor, frames), index.rateHz);
@@ -95,7 +95,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
     done += clip.frames;
     progress(done / total, clip.name);
   }
-  return { byPerson, exact, collection, frames: total };
+  return { byPerson, exact, pictures, frames: total };
 }
 
 /** The measures as reports, of everyone, of those never trained on and of each person. */
@@ -189,7 +189,7 @@ async function main(): Promise<void> {
   const result = resultOf(corpus, measured);
   printResult(corpus, result);
   const { rateHz } = corpus.index;
-  if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(measured.collection, rateHz))}\n`);
+  if (figures) writeFileSync(figures, `${JSON.stringify({ poses: inOrder(measured.pictures) })}\n`);
   const disturbed = robustness || checked ? await measureDisturbed(corpus, checked ?? usualTracking) : null;
   if (disturbed) console.log(robustnessText(disturbed, rateHz));
   const speeds = options.speed ? await measureSpeeds(corpus) : null;

@@ -2,7 +2,7 @@ import { writeFileSync } from 'node:fs';
 import { reasonOf, recordOf } from 'threepoint/core';
 import { mean } from '../../src/threepoint/core/math/statistics';
 import { type DrivenMethod, drive } from './drive';
-import { addPictures, type Motion, motions, type PictureOfMotion } from './figures';
+import { addPictures, inOrder, type Pictures } from './figures';
 import { addClip, emptyMeasures, report, rounded } from './measures';
 import { loadRegressors } from './networks';
 import { calibrationOf, readClip, readIndex } from './recordings';
@@ -31,7 +31,7 @@ async function main(): Promise<void> {
   const chosen = chooseClips(index.clips, paperFrames[0] + paperFrames[1]);
   const measures = recordOf(methods, emptyMeasures);
   const times = recordOf(methods, (): number[] => []);
-  const pictures = new Map<Motion, PictureOfMotion>();
+  const pictures: Pictures = new Map();
   for (const clip of chosen) {
     const frames = readClip(recordings, index, clip);
     const calibration = calibrationOf(index, clip);
@@ -57,7 +57,7 @@ async function main(): Promise<void> {
         .filter((part) => part.length > 0)
         .map(spreadOf),
     })),
-    poses: motions.flatMap((motion) => pictures.get(motion) ?? []),
+    poses: inOrder(pictures),
   };
   writeFileSync(json, `${JSON.stringify(result)}\n`);
   for (const name of methods) console.log(`${name}: MPJPE ${result.methods[name].mpjpeCm.mean.toFixed(2)} cm`);

@@ -85,16 +85,7 @@ LABORATORIES = tuple(
     for names, both in ((("135", "005"), (0.9, 0.8)), (("901", "902"), (0.7, 0.6)))
 )
 
-CONTRACTS = {
-    "paper": {"errors": {}, "bytes": 1},
-    "learned": {
-        "bytes": 42544,
-        "errors": {
-            "IK, fold B (014)": {"mean": 6.0, "left elbow": 5.0, "right elbow": 5.0},
-            "learned, fold B (014)": {"mean": 5.4, "left elbow": 4.0, "right elbow": 4.0},
-        },
-    },
-}
+CONTRACT = {"bytes": 42544}
 
 
 def verdict(text, start):
@@ -103,13 +94,13 @@ def verdict(text, start):
 
 
 def test_every_table_has_as_many_cells_in_each_row_as_in_its_head():
-    for name, content in accuracy_page.sections(evaluation(), CONTRACTS, LABORATORIES).items():
+    for name, content in accuracy_page.sections(evaluation(), CONTRACT, LABORATORIES).items():
         rows = [line for line in content.splitlines() if line.startswith("|")]
         assert len({row.count("|") for row in rows}) <= 1, name
 
 
 def test_aims_are_met_or_missed_by_the_figures():
-    text = accuracy_tables.aims(evaluation(), CONTRACTS)
+    text = accuracy_tables.aims(evaluation(), CONTRACT)
     assert verdict(text, "MPJPE relative to IK, 005") == ["≤ 0.86", "0.800", "met"]
     assert verdict(text, "the person with the largest MPJPE relative to IK") == ["≤ 1.0", "0.800", "met"]
     assert verdict(text, "eye height") == ["≤ +0.2 cm", "+0.25 cm", "missed"]
@@ -136,7 +127,7 @@ def test_laboratories_that_were_not_measured_leave_their_table_as_it_was(tmp_pat
     page = "<!-- laboratories -->\nas before\n<!-- /laboratories -->\n"
 
     def renewed():
-        section = accuracy_page.sections(evaluation(), CONTRACTS, accuracy_page.laboratories(config))["laboratories"]
+        section = accuracy_page.sections(evaluation(), CONTRACT, accuracy_page.laboratories(config))["laboratories"]
         return accuracy_tables.renew(page, {"laboratories": section})
 
     for file, measured in zip(files, [each for both in LABORATORIES for each in both], strict=True):
@@ -150,12 +141,12 @@ def test_laboratories_that_were_not_measured_leave_their_table_as_it_was(tmp_pat
 def test_eight_bits_are_compared_where_both_were_measured():
     without = evaluation()
     del without["fp32"]
-    assert verdict(accuracy_tables.aims(evaluation(), CONTRACTS), "int8 against fp32: MPJPE") == [
+    assert verdict(accuracy_tables.aims(evaluation(), CONTRACT), "int8 against fp32: MPJPE") == [
         "≤ +0.05 cm",
         "+0.000 cm",
         "met",
     ]
-    assert "fp32" not in accuracy_tables.aims(without, CONTRACTS)
+    assert "fp32" not in accuracy_tables.aims(without, CONTRACT)
 
 
 def test_losses_end_with_those_of_hand_tracking():
@@ -186,8 +177,8 @@ def test_only_people_held_out_have_a_row():
 
 def test_a_page_renewed_twice_is_the_page_renewed_once():
     page = (Path(accuracy_page.REPOSITORY) / "docs/accuracy.md").read_text()
-    once = accuracy_tables.renew(page, accuracy_page.sections(evaluation(), CONTRACTS, LABORATORIES))
-    assert accuracy_tables.renew(once, accuracy_page.sections(evaluation(), CONTRACTS, LABORATORIES)) == once
+    once = accuracy_tables.renew(page, accuracy_page.sections(evaluation(), CONTRACT, LABORATORIES))
+    assert accuracy_tables.renew(once, accuracy_page.sections(evaluation(), CONTRACT, LABORATORIES)) == once
 
 
 def test_a_page_without_the_place_of_a_table_is_refused():

@@ -68,11 +68,6 @@ def _parser() -> argparse.ArgumentParser:
         help="train and replace only these (default: paper,learned)",
     )
     parser.add_argument(
-        "--no-frame-random",
-        action="store_true",
-        help="leave the paper's own protocol out; what an earlier run found stays",
-    )
-    parser.add_argument(
         "--refit-kinematics",
         action="store_true",
         help="first fit the page's body proportions and IK parameters on all trainable people",
@@ -112,7 +107,6 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
         skeleton_map=given.skeleton,
         folds=tuple(given.folds.split(",")),
         networks=tuple(given.networks.split(",")),
-        frame_random=not given.no_frame_random,
         task=_TASKS[tasks[0]][0] if tasks else TrainConfig.task,
         groups=given.groups,
         refit_kinematics=given.refit_kinematics,

@@ -28,7 +28,7 @@ class AccuracyPageConfig:
 
 
 def sections(
-    evaluation: dict[str, Any], contracts: dict[str, Any], measured: tuple[tables.ByHands, tables.ByHands] | None
+    evaluation: dict[str, Any], contract: dict[str, Any], measured: tuple[tables.ByHands, tables.ByHands] | None
 ) -> dict[str, str | None]:
     """Returns the page's tables by their marks; measured: the result of `laboratories`, None keeps that table."""
     corpus, robustness = evaluation["corpus"], evaluation["robustness"]
@@ -38,7 +38,7 @@ def sections(
     )
     return {
         "corpus": f"Evaluated: {motions}; held out: {', '.join(tables.people_held_out(evaluation))}.",
-        "aims": tables.aims(evaluation, contracts),
+        "aims": tables.aims(evaluation, contract),
         "summary": tables.summary(evaluation),
         "people": tables.people(evaluation),
         "disturbed": f"Clips, a seeded choice of the people held out, {disturbed}",
@@ -69,16 +69,10 @@ def main(config: AccuracyPageConfig) -> None:
     from . import accuracy_plots as plots
 
     evaluation, figures = json.loads(config.evaluation.read_text()), json.loads(config.figures.read_text())
-    contracts = {name: json.loads((config.models / f"{name}.json").read_text()) for name in ("paper", "learned")}
-    config.page.write_text(tables.renew(config.page.read_text(), sections(evaluation, contracts, laboratories(config))))
+    contract = json.loads((config.models / "learned.json").read_text())
+    config.page.write_text(tables.renew(config.page.read_text(), sections(evaluation, contract, laboratories(config))))
     config.images.mkdir(parents=True, exist_ok=True)
     with plots.plt.rc_context(plots.STYLE):
-        if not plots.learning_curve(contracts["paper"], config.images):
-            print("paper.json has no learning curve: its figure stays as it is")
-        if not plots.train_and_test(evaluation, config.images):
-            print("all evaluated people were trained on, or none: the figure of both stays as it is")
-        if figures["trace"] is not None:
-            plots.right_shoulder(figures["trace"], config.images)
         plots.by_joint(evaluation, config.images)
         plots.losses(evaluation, config.images)
         plots.offsets(evaluation, config.images)

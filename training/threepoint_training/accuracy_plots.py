@@ -17,8 +17,8 @@ from .accuracy_tables import JOINTS, held_out
 
 Json = dict[str, Any]
 # The palette of Okabe and Ito, which is safe for colour-blind readers; marks differ as well.
-COLOURS = {"ik": "#D55E00", "paper": "#009E73", "learned": "#0072B2"}
-MARKS = {"ik": "s", "paper": "^", "learned": "o"}
+COLOURS = {"ik": "#D55E00", "learned": "#0072B2"}
+MARKS = {"ik": "s", "learned": "o"}
 # The colours of the paper's figure 7 for docs/paper.md, where the network is blue and IK red.
 PAPER_COLOURS = {"ik": "#D55E00", "paper": "#0072B2", "paper-published": "#56B4E9"}
 NAMES = {"ik": "IK", "paper": "paper", "learned": "learned", "paper-published": "paper, 3.5"}
@@ -73,52 +73,13 @@ def label_ends(axes: Axes, ends: dict[str, tuple[float, str, str]], least: float
         note(axes, text, (1, at), va="center", color=colour, fontweight="bold", **place)
 
 
-def learning_curve(contract: Json, folder: Path) -> bool:
-    """The paper's figure 4, by epoch; False where the contract has no curve."""
-    curve = contract.get("learningCurve")
-    if curve is None:
-        return False
-    figure, axes = panels_of(1, 1, 3.4)
-    epochs = curve["epochs"]
-    axes.plot(epochs, curve["test"], color=COLOURS["ik"], marker="s")
-    axes.plot(epochs, curve["train"], color=COLOURS["learned"], marker="o")
-    top = max(curve["test"])
-    label_ends(
-        axes,
-        {
-            "test": (curve["test"][-1], "people\nheld out", COLOURS["ik"]),
-            "train": (curve["train"][-1], "people\ntrained on", COLOURS["learned"]),
-        },
-        0.15 * top,
-    )
-    axes.set(xlabel="epochs", ylabel="MSE per coordinate [cm²]", ylim=(0, None), xlim=(0, max(epochs)))
-    axes.set_title("The paper's network while it learns")
-    save(figure, folder, "learning-curve")
-    return True
-
-
-def right_shoulder(trace: Json, folder: Path) -> None:
-    """The paper's figure 5: the error of the right shoulder over time in one clip."""
-    figure, axes = panels_of(1, 1, 3.4)
-    ends = {}
-    for method, colour in COLOURS.items():
-        errors = np.array(trace["rightShoulderCm"][method])
-        times = np.arange(len(errors)) / trace["rateHz"]
-        axes.plot(times, errors, color=colour, linewidth=1.6, linestyle={"paper": (0, (4, 1.5))}.get(method, "-"))
-        ends[method] = (float(errors[-1]), f"{NAMES[method]}\nmean {errors.mean():.1f}", colour)
-    axes.set(xlabel="time [s]", ylabel="error [cm]", ylim=(0, None), xlim=(0, times[-1]))
-    label_ends(axes, ends, 0.17 * axes.get_ylim()[1])
-    axes.set_title(f"Right shoulder in the clip of median error, {trace['clip']}")
-    save(figure, folder, "right-shoulder")
-
-
 def by_joint(evaluation: Json, folder: Path) -> None:
     """Median and 95th percentile by joint."""
     figures = held_out(evaluation)
     figure, axes = panels_of(1, 1, 4.5)
     rows = np.arange(len(JOINTS))[::-1]
     for number, (method, colour) in enumerate(COLOURS.items()):
-        y = rows + 0.27 * (1 - number)
+        y = rows + 0.18 * (1 - 2 * number)
         median = np.array([figures[method]["joints"][joint]["median"] for joint in JOINTS])
         p95 = np.array([figures[method]["joints"][joint]["p95"] for joint in JOINTS])
         axes.hlines(y, median, p95, color=colour, linewidth=2, alpha=0.55)
@@ -133,30 +94,6 @@ def by_joint(evaluation: Json, folder: Path) -> None:
     axes.grid(axis="y", visible=False)
     axes.set_title("Error by joint, people held out")
     save(figure, folder, "by-joint")
-
-
-def train_and_test(evaluation: Json, folder: Path) -> bool:
-    """The paper's table 1 as a figure: MSE by joint on people trained on and held out."""
-    if "seen" not in evaluation:
-        return False
-    figure, panels = panels_of(1, 3, 3.3, sharex=True, sharey=True)
-    rows, largest = np.arange(len(JOINTS))[::-1], 0.0
-    for axes, (method, colour) in zip(panels, COLOURS.items(), strict=True):
-        seen, unseen = (
-            np.array([evaluation[side][method]["jointMseCm2"][joint] for joint in JOINTS])
-            for side in ("seen", "unseen")
-        )
-        largest = max(largest, seen.max(), unseen.max())
-        axes.hlines(rows, seen, unseen, color=colour, linewidth=2, alpha=0.4)
-        axes.plot(seen, rows, MARKS[method], color=colour, markerfacecolor="white", markeredgewidth=1.6)
-        axes.plot(unseen, rows, MARKS[method], color=colour)
-        axes.set_yticks(rows, JOINTS.values())
-        axes.grid(axis="y", visible=False)
-        axes.set_title(NAMES[method], color=colour)
-    panels[0].set_xlim(0, 1.07 * largest)
-    figure.supxlabel("MSE per coordinate [cm²]: hollow = people trained on, filled = people held out", fontsize=10)
-    save(figure, folder, "train-and-test")
-    return True
 
 
 def losses(evaluation: Json, folder: Path) -> None:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
-METHODS = {"ik": "IK", "paper": "the paper's network", "learned": "learned"}
+METHODS = {"ik": "IK", "learned": "learned"}
 JOINTS = {
     "leftElbow": "left elbow",
     "rightElbow": "right elbow",
@@ -85,7 +85,6 @@ def _losses(evaluation: Json) -> list[tuple[str, dict[str, Json]]]:
 
 def loss(evaluation: Json) -> str:
     """Returns the table of errors while a hand is lost, with the ratios to the same frames with the hand seen."""
-    methods = ("ik", "learned")
 
     def ratio(figures: Json, joints: str) -> str:
         cm = figures["during"][f"{joints}Cm"]
@@ -96,10 +95,10 @@ def loss(evaluation: Json) -> str:
 
     cells = (lambda f: ratio(f, "all"), lambda f: ratio(f, "elbow"), step)
     rows = [
-        [f"{length}, {by_method['ik']['losses']} losses", *(cell(by_method[m]) for cell in cells for m in methods)]
+        [f"{length}, {by_method['ik']['losses']} losses", *(cell(by_method[m]) for cell in cells for m in METHODS)]
         for length, by_method in _losses(evaluation)
     ]
-    head = [f"{what}: {METHODS[method]}" for what in ("all joints", "its elbow", "step") for method in methods]
+    head = [f"{what}: {METHODS[method]}" for what in ("all joints", "its elbow", "step") for method in METHODS]
     return table(["hand lost for [cm]", *head], rows)
 
 
@@ -121,9 +120,8 @@ def faults(evaluation: Json) -> str:
         worst = max(entry["mpjpeCm"] for entry in estimators[method][key] if chosen(entry))
         return signed(worst - estimators[method]["mpjpeCm"])
 
-    methods = ("ik", "learned")
-    rows = [[label, *(cell(method, key, chosen) for method in methods)] for label, key, chosen in kinds]
-    return table(["added to the MPJPE [cm], worst direction", *(METHODS[method] for method in methods)], rows)
+    rows = [[label, *(cell(method, key, chosen) for method in METHODS)] for label, key, chosen in kinds]
+    return table(["added to the MPJPE [cm], worst direction", *METHODS.values()], rows)
 
 
 def laboratories(home: ByHands, elsewhere: ByHands) -> str:
@@ -163,7 +161,7 @@ def _mean_over_people(people: list[Json], method: str, error: Callable[[Json], f
     return sum(error(person[method]) for person in people) / len(people)
 
 
-def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
+def aims(evaluation: Json, contract: Json) -> str:
     """Returns the table of aims, measured values and verdicts."""
     figures, robust = held_out(evaluation), evaluation["robustness"]["estimators"]["learned"]
     ours = figures["learned"]
@@ -195,7 +193,7 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
         more, rougher = ours["mpjpeCm"]["mean"] - exact["mpjpeCm"]["mean"], ours["jerkRatio"] / exact["jerkRatio"]
         rows.append(_row("int8 against fp32: MPJPE", "≤ +0.05 cm", f"{signed(more, 3)} cm", more <= 0.05))
         rows.append(_row("int8 against fp32: jerk", "≤ 1.05 ×", f"{rougher:.3f} ×", rougher <= 1.05))
-    size = contracts["learned"]["bytes"] / 1000
+    size = contract["bytes"] / 1000
     hands, bones = ours["handErrorMaxMm"], ours["boneVariationMm"]
     rows += [
         _row("tracker mounted ±3 cm elsewhere, worst axis", "≤ +0.3 cm", f"{signed(offset)} cm", offset <= 0.3),

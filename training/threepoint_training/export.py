@@ -35,8 +35,6 @@ class Provenance:
     people: tuple[str, ...]
     seed: int
     errors: dict[str, dict[str, float]]
-    # By epochs; None: it was not followed.
-    learning_curve: dict[str, list[float]] | None = None
 
     def __post_init__(self) -> None:
         for unwanted, why in (
@@ -122,7 +120,7 @@ def _write(config: ExportConfig, out: Path, model: onnx.ModelProto, quantisation
 
 def _contract(config: ExportConfig, content: bytes, quantisation: dict[str, Any]) -> dict[str, Any]:
     is_paper, provenance = config.name == "paper", config.provenance
-    contract: dict[str, Any] = {
+    return {
         "name": config.name,
         "version": config.version,
         "file": f"{config.name}.onnx",
@@ -141,9 +139,6 @@ def _contract(config: ExportConfig, content: bytes, quantisation: dict[str, Any]
             for protocol, row in provenance.errors.items()
         },
     }
-    if provenance.learning_curve is not None:
-        contract["learningCurve"] = {"unit": "cm² per coordinate, network alone"} | provenance.learning_curve
-    return contract
 
 
 def _paper_input() -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """One network trained, judged or written: the steps that cross-validation and the networks of the page share."""
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +8,7 @@ import torch
 
 from . import export, fitted_kinematics, train_learned, train_paper
 from .prepared_corpus import PreparedCorpus
-from .splits import counted, trainable, trained_on
+from .splits import counted, trained_on
 from .training_config import TrainConfig
 from .training_report import TrainingReport
 
@@ -35,19 +34,16 @@ def paper(
     run: TrainingRun,
     frames: train_paper.PaperFrames,
     label: str,
-    chosen: np.ndarray | None = None,
-    watch: Callable[[float, train_paper.AnyPaperNetwork], None] = lambda *_: None,
 ) -> torch.nn.Module:
-    """The paper's network trained on the chosen frames; None: on all."""
+    """The paper's network trained on these frames."""
     config = run.config.paper
-    chosen = np.arange(len(frames.inputs)) if chosen is None else chosen
-    batches = max(1, 2 * len(chosen) // config.batch)
+    batches = max(1, 2 * len(frames.inputs) // config.batch)
     with run.report.task(f"paper {label}", config.epochs * 100) as advance:
 
         def report(epoch: int, iteration: int, loss: float) -> None:
             advance(100 * epoch + 100 * iteration / batches, f"paper {label} {loss:.4f}")
 
-        return train_paper.train(frames, chosen, config, report, watch)
+        return train_paper.train(frames, np.arange(len(frames.inputs)), config, report)
 
 
 def _people_of(run: TrainingRun, name: str, training: tuple[str, ...], label: str) -> tuple[str, ...]:
@@ -62,15 +58,6 @@ def paper_frames(run: TrainingRun, training: tuple[str, ...], label: str) -> tra
     return train_paper.frames_of(run.corpus, _people_of(run, "paper", training, label), run.config.seed)
 
 
-def followed_paper(
-    run: TrainingRun, training: tuple[str, ...], test: train_paper.PaperFrames, label: str
-) -> tuple[torch.nn.Module, train_paper.LearningCurve]:
-    """The paper's network trained on its subset of `training`, and its learning curve on those frames and on `test`."""
-    frames = paper_frames(run, training, label)
-    curve, watch = train_paper.follow_learning(frames, test)
-    return paper(run, frames, label, watch=watch), curve
-
-
 def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn.Module:
     """Our network trained on these people."""
     people = _people_of(run, "learned", training, label)
@@ -78,36 +65,6 @@ def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn
         return train_learned.train(
             run.corpus, people, run.config.learned, lambda step, loss: advance(step + 1, f"learned {label} {loss:.3f}")
         )
-
-
-def frame_random_split(seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The paper's protocol: frames to train on, and 20 % of all frames, drawn at random, to test on; their neighbours
-    are trained on.
-    """
-    test = np.sort(np.random.default_rng(seed).choice(count, count // 5, replace=False))
-    return np.setdiff1d(np.arange(count), test), test
-
-
-def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
-    """Errors [F, 6] in cm of the paper's network on the test frames of the paper's protocol."""
-    frames = paper_frames(run, trainable(tuple(run.corpus.people)), "frame-random")
-    chosen, test = frame_random_split(run.config.seed, len(frames.inputs))
-    network = paper(run, frames, "frame-random", chosen)
-    return train_paper.errors_cm(network, frames, test)
-
-
-def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
-    """Errors [F, 6] in cm of our network's raw joints on the test frames of the paper's protocol."""
-    people = _people_of(run, "learned", trainable(tuple(run.corpus.people)), "frame-random")
-    frames = train_learned.held_out(run.corpus, people, run.config.learned.window_seconds)
-    chosen, test = frame_random_split(run.config.seed, len(frames.inputs))
-    config = run.config.learned_frame_random
-    with run.report.task("learned frame-random", config.steps) as advance:
-        network = train_learned.train_frame_random(
-            frames, chosen, config, lambda step, loss: advance(step + 1, f"learned frame-random {loss:.3f}")
-        )
-    tested = frames.subset(test)
-    return train_learned.raw_errors_cm(train_paper.predict(network, tested.inputs), tested)
 
 
 @dataclass(frozen=True)
@@ -144,7 +101,6 @@ def provenance(
     name: str,
     training: tuple[str, ...],
     errors: dict[str, dict[str, float]],
-    curve: train_paper.LearningCurve | dict[str, list[float]] | None,
 ) -> export.Provenance:
     """What a contract states of a network of this run: corpus, seed, errors [cm] and the subset of `training` that it
     trained on.
@@ -158,5 +114,4 @@ def provenance(
         people=trained_on(name, training),
         seed=run.config.seed,
         errors=errors,
-        learning_curve=asdict(curve) if isinstance(curve, train_paper.LearningCurve) else curve,
     )

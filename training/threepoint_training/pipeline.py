@@ -79,7 +79,7 @@ def _train_on_all_subjects(run: TrainingRun) -> None:
     """
     subjects = trainable(tuple(run.corpus.people))
     for name in run.config.networks:
-        errors, curve = cross_validate.earlier_errors(run, name)
+        errors = cross_validate.earlier_errors(run, name)
         row = f"{name}, all subjects, trained on"
         if name == "paper":
             frames = fit_networks.paper_frames(run, subjects, "all subjects")
@@ -89,7 +89,7 @@ def _train_on_all_subjects(run: TrainingRun) -> None:
             network = fit_networks.learned(run, subjects, "all subjects")
             test = train_learned.held_out(run.corpus, subjects, run.config.learned.window_seconds)
             run.report.found(row, train_learned.errors_cm(network, test))
-        provenance = fit_networks.provenance(run, name, subjects, errors | {row: run.report.rows[row]}, curve)
+        provenance = fit_networks.provenance(run, name, subjects, errors | {row: run.report.rows[row]})
         fit_networks.write(run, name, network, provenance, Destination(run.config.out))
 
 
@@ -145,7 +145,7 @@ def _make_board(run: TrainingRun) -> Rows:
         else:
             network = fit_networks.learned(run, training, "board")
         fit_networks.write(
-            run, name, network, fit_networks.provenance(run, name, training, {}, None), Destination(folder)
+            run, name, network, fit_networks.provenance(run, name, training, {}), Destination(folder)
         )
     train_board.main(run.corpus, config.board, print_line)
     return {}

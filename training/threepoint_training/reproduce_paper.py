@@ -19,7 +19,6 @@ from .arrays import Array
 from .chest_features import chest_axes
 from .differentiable_kinematics import DifferentiableKinematics
 from .features import FEATURES
-from .fit_networks import frame_random_split
 from .model import PaperShape
 from .motion_files import MocapError
 from .prepared_corpus import PreparedCorpus
@@ -81,6 +80,14 @@ class ReproductionConfig:
     seed: int = 2460
     epochs: int = TrainPaperConfig.epochs
     stages: tuple[str, ...] = ()
+
+
+def frame_random_split(seed: int, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The paper's protocol: frames to train on, and 20 % of all frames, drawn at random, to test on; their neighbours
+    are trained on.
+    """
+    test = np.sort(np.random.default_rng(seed).choice(count, count // 5, replace=False))
+    return np.setdiff1d(np.arange(count), test), test
 
 
 def errors_by_side(differences: dict[str, Array], scale: Array | None) -> Json:

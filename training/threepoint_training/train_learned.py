@@ -3,7 +3,6 @@ steps, then shrunk.
 """
 
 import functools
-import math
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields
@@ -16,10 +15,9 @@ from . import estimate_hand_tilts, hand_tilt
 from .arrays import Array
 from .augment import AugmentConfig, draw_batch
 from .body_parts import BodyParts
-from .chest_features import CHEST_FEATURES
 from .differentiable_kinematics import DifferentiableKinematics
 from .estimate_hand_tilts import NO_CALIBRATED_TILTS, CalibratedTilts
-from .features import FEATURES, frame_features
+from .features import frame_features
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
@@ -196,7 +194,7 @@ def train(
         raw = config.auxiliary_loss_weight * distance(corrections).mean()
         return raw + distance(kinematics(corrections, x)).mean()
 
-    for step, loss in _descend(network, config, loss_of_batch, steepest=1.0):
+    for step, loss in _descend(network, config, loss_of_batch):
         with torch.no_grad():
             weight = min(keep, (1 + step) / (10 + step))
             for average, value in zip(averaged.parameters(), network.parameters(), strict=True):
@@ -206,54 +204,17 @@ def train(
     return averaged
 
 
-@dataclass(frozen=True)
-class TrainFrameRandomConfig:
-    """Our network under the paper's protocol, which trains on the neighbours of every test frame: wider, trained
-    longer, without augmentation.
-    """
-
-    width: int = 512
-    hidden_layers: int = 3
-    steps: int = 12_000
-    batch: int = 1024
-    learning_rate: float = 2e-3
-    weight_decay: float = 1e-4
-    seed: int = 2460
-
-
-def train_frame_random(
-    frames: HeldOut,
-    chosen: NDArray[np.int64],
-    config: TrainFrameRandomConfig,
-    report: Callable[[int, float], None] = lambda *_: None,
-) -> CorrectionNetwork:
-    """Trains on the chosen frames as they are; report(step, loss)."""
-    torch.manual_seed(config.seed)
-    x, y = torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen])
-    network = CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
-    network.normalise(x, y)
-
-    def loss_of_batch() -> torch.Tensor:
-        batch = torch.randint(len(x), (config.batch,))
-        return mean_distances(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)).mean()
-
-    for step, loss in _descend(network, config, loss_of_batch):
-        report(step, loss)
-    return network.eval()
-
-
 # A typical residual [eye heights]; divides the loss, which so stays near one.
 _RESIDUAL = 0.025
 
 
 def _descend(
     network: CorrectionNetwork,
-    config: TrainLearnedConfig | TrainFrameRandomConfig,
+    config: TrainLearnedConfig,
     loss_of_batch: Callable[[], torch.Tensor],
-    steepest: float = math.inf,
 ) -> Iterator[tuple[int, float]]:
     """Trains the network by AdamW with one cycle of the learning rate; yields each step and its loss. Gradients longer
-    than `steepest` are shortened to it.
+    than 1 are shortened to it.
     """
     optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
     schedule = torch.optim.lr_scheduler.OneCycleLR(
@@ -264,7 +225,7 @@ def _descend(
         loss = loss_of_batch() / _RESIDUAL
         optimiser.zero_grad()
         loss.backward()
-        torch.nn.utils.clip_grad_norm_(network.parameters(), steepest)
+        torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
         optimiser.step()
         schedule.step()
         yield step, float(loss.detach())

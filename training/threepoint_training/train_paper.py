@@ -1,7 +1,7 @@
 """Trains the paper's network as its section 3.3 says: MSE, Adam 1e-3, five epochs, in-between poses as augmentation."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -30,7 +30,7 @@ class TrainPaperConfig:
     batch: int = 128
     iterations: int | None = None
     seed: int = 2023
-    # Points of the learning curve in each epoch.
+    # Calls of `watch` in each epoch.
     watches_per_epoch: int = 4
     shape: PaperShape = PaperShape()
 
@@ -48,15 +48,6 @@ class PaperInputs:
     axes: Literal["room", "heading"] = "heading"
     hands: Literal["axes", "parent"] = "axes"
     share_kept: float = 1.0
-
-
-@dataclass(frozen=True)
-class LearningCurve:
-    """Mean squared error per coordinate [cm²] on people trained on and on people held out, after so many epochs."""
-
-    epochs: list[float] = field(default_factory=list)
-    train: list[float] = field(default_factory=list)
-    test: list[float] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -174,25 +165,6 @@ def train(
                 watch(epoch + (iteration + 1) / batches, network.eval())
                 network.train()
     return network.eval()
-
-
-def follow_learning(
-    train: PaperFrames, test: PaperFrames, every: int = 16
-) -> tuple[LearningCurve, Callable[[float, AnyPaperNetwork], None]]:
-    """A curve and the watch that fills it, from one frame in `every` of each side; it changes nothing of the training.
-    """
-    curve = LearningCurve()
-
-    def error(network: AnyPaperNetwork, frames: PaperFrames) -> float:
-        difference = predict(network, frames.inputs[::every]) - frames.targets[::every]
-        return float(np.mean(np.square(difference, dtype=np.float64))) * 1e4
-
-    def watch(epochs: float, network: AnyPaperNetwork) -> None:
-        curve.epochs.append(round(epochs, 3))
-        curve.train.append(round(error(network, train), 3))
-        curve.test.append(round(error(network, test), 3))
-
-    return curve, watch
 
 
 def _midway(inputs: NDArray[np.float32], following: NDArray[np.int64]) -> NDArray[np.float32]:

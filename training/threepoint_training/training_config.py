@@ -37,7 +37,6 @@ class TrainConfig:
     skeleton_map: Path | None = None
     folds: tuple[str, ...] = ("A", "B")
     networks: tuple[str, ...] = ("paper", "learned")
-    frame_random: bool = True
     task: Task = "train"
     # The task "selection" holds people out in this many groups in turn; None: one person at a time.
     groups: int | None = None
@@ -47,7 +46,6 @@ class TrainConfig:
     threads: int = 1
     paper: train_paper.TrainPaperConfig = train_paper.TrainPaperConfig()
     learned: train_learned.TrainLearnedConfig = train_learned.TrainLearnedConfig()
-    learned_frame_random: train_learned.TrainFrameRandomConfig = train_learned.TrainFrameRandomConfig()
     ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
     board: train_board.BoardConfig = train_board.BoardConfig()
 
@@ -58,7 +56,6 @@ def quick(config: TrainConfig) -> TrainConfig:
         config,
         paper=replace(config.paper, epochs=1, batch=1024),
         learned=replace(config.learned, steps=80, batch=512),
-        learned_frame_random=replace(config.learned_frame_random, width=64, steps=200, batch=512),
         ik=replace(config.ik, iterations=2, frames_per_person=200),
         board=replace(config.board, steps=40, batch=8, watch_every=20, watched_windows=64),
     )
