@@ -2,6 +2,7 @@ import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
 import { type BoneName, handFingerBones, neededBones } from '../../core/humanoid/bones';
 import { type Side, sides } from '../../core/math/side';
+import { skinMovedBy } from '../scene-meshes';
 import { boneNode } from './needed-bones';
 
 // In this file a body at rest faces +Z, as a VRM does: its left is +X.
@@ -154,14 +155,25 @@ function lowest(body: RestingBody): number {
   return ankle - (head - ankle) * ankleFraction;
 }
 
+/** Returns the height [m] of the lowest skin of the feet; null: they move none. */
+function sole(body: RestingBody): number | null {
+  const feet = new Set<Object3D>();
+  for (const side of sides) body.node(`${side}Foot`)?.traverse((node) => feet.add(node));
+  const skin = skinMovedBy(body.vrm.scene, feet);
+  return skin.length > 0 ? skin.reduce((least, { y }) => Math.min(least, y), Number.POSITIVE_INFINITY) : null;
+}
+
 /**
- * Moves the soles to the floor if they are off by more than the thickness of shoes, and the pelvis above the origin.
+ * Moves the soles to the floor and the pelvis above the origin, if they are off by more than is seen. Soles that bones
+ * alone show may be off by the thickness of shoes.
  */
 function putOnFloor(body: RestingBody): void {
-  const floor = lowest(body);
+  const skin = sole(body);
+  const floor = skin ?? lowest(body);
   const hips = body.at('hips')!;
-  const near = (body.at('head')!.y - floor) * 0.06;
-  const move = new Vector3(hips.x, Math.abs(floor) < near ? 0 : floor, Math.abs(hips.z) < near ? 0 : hips.z).negate();
+  const shoes = (body.at('head')!.y - floor) * 0.06;
+  const seen = skin === null ? shoes : 0.005;
+  const move = new Vector3(hips.x, Math.abs(floor) < seen ? 0 : floor, Math.abs(hips.z) < shoes ? 0 : hips.z).negate();
   const { scene } = body.vrm;
   if (move.length() > 1e-4) setWorld(scene, new Matrix4().makeTranslation(move).multiply(scene.matrixWorld));
 }
