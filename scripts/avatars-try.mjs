@@ -57,13 +57,13 @@ await main(async () => {
     const all = [];
     for (const file of files.sort()) {
       const address = `/@fs/${join(folder, file).replace(/^\//, '')}`;
-      const { picture, waving, refused, loadMs } = await page.evaluate(
+      const { picture, waving, refused, notes, loadMs } = await page.evaluate(
         ([address, name]) => window.makeSheet(address, name),
         [address, file],
       );
       write(basename(file, extname(file)), picture);
       if (waving) all.push(waving);
-      console.log(refused ? `- ${refused}` : `+ ${file} in ${Math.round(loadMs)} ms`);
+      console.log(refused ? `- ${refused}` : [`+ ${file} in ${Math.round(loadMs)} ms`, ...notes].join('; '));
     }
     if (all.length > 0) write('all', await page.evaluate((waving) => window.makeRow(waving), all));
   } finally {

@@ -45,6 +45,8 @@ export interface Avatar {
   readonly object: Object3D;
   /** The height of the head's top when the body stands upright [m]. */
   readonly height: number;
+  /** What was assumed of its file, a sentence each. */
+  readonly notes: readonly string[];
   /** Scales the rig limb by limb to these measures, not by its own proportions. May be called at any time. */
   setCalibration(calibration: Calibration): void;
   /**
@@ -109,8 +111,7 @@ const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 const longestStep = 0.25;
 const upright = recordOf(jointNames, () => identity);
 
-interface AvatarParts {
-  readonly vrm: VRM;
+interface AvatarParts extends Pick<LoadedAvatar, 'vrm' | 'notes'> {
   readonly object: Group;
   readonly rig: Rig;
   readonly arms: ArmHelperJoints;
@@ -119,7 +120,7 @@ interface AvatarParts {
 }
 
 /** Creates an avatar from a file; a loaded file can be used once. */
-function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
+function* makeAvatar({ vrm, notes }: LoadedAvatar): Steps<Avatar> {
   const object = new Group();
   object.name = 'avatar';
   object.add(vrm.scene);
@@ -135,7 +136,7 @@ function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
   yield* setUpFirstPerson(vrm);
   const meshes = yield* readMeshes(vrm, rig);
   yield;
-  return new VrmAvatar({ vrm, object, rig, arms, legs, meshes });
+  return new VrmAvatar({ vrm, notes, object, rig, arms, legs, meshes });
 }
 
 /**
@@ -156,6 +157,7 @@ function* setUpFirstPerson({ firstPerson, humanoid, scene }: VRM): Steps<void> {
 
 class VrmAvatar implements Avatar {
   readonly object: Group;
+  readonly notes: readonly string[];
   private readonly vrm: LoadedAvatar['vrm'];
   private readonly rig: Rig;
   private readonly idle: IdleMotion;
@@ -182,8 +184,9 @@ class VrmAvatar implements Avatar {
   private readonly handBone = quat(0, 0, 0, 1);
   private readonly joint = vec3(0, 0, 0);
 
-  constructor({ vrm, object, rig, arms, legs, meshes }: AvatarParts) {
+  constructor({ vrm, notes, object, rig, arms, legs, meshes }: AvatarParts) {
     this.vrm = vrm;
+    this.notes = notes;
     this.object = object;
     this.rig = rig;
     this.arms = arms;
@@ -209,7 +212,8 @@ class VrmAvatar implements Avatar {
     // Rig to body, the same in all directions; limbs add their own stretch.
     this.scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
     this.trunk.fit(tPose, this.scale);
-    const legs = this.legs.fit(calibration.eyeHeight, tPose.hips.position.y, this.scale);
+    const hipsHeight = tPose.hips.position.y;
+    const legs = this.legs.fit(calibration.eyeHeight, hipsHeight, this.scale, this.trunk.hipsFraction);
     this.rig.fit(tPose, legs, this.scale);
     // The file's own size is what its scene was before it was settled.
     for (const side of sides) {
@@ -248,6 +252,13 @@ class VrmAvatar implements Avatar {
   private applyBody({ head, feet }: AvatarPose, body: UpperBodyPose, deltaSeconds: number): void {
     const joints = forwardKinematics(this.skeleton, body, this.joints);
     this.idle.apply(joints, deltaSeconds);
+    const { points } = this;
+    points.hips = joints.hips;
+    points.head = head;
+    points.leftHand = joints.leftHand.position;
+    points.rightHand = joints.rightHand.position;
+    // The legs step under the estimated hips; the trunk may lower them to the rig's.
+    this.legs.apply(points, deltaSeconds, feet);
     this.trunk.apply(joints);
     this.arms.untwist(joints);
     for (let i = 0; i < jointNames.length; i++) {
@@ -256,12 +267,6 @@ class VrmAvatar implements Avatar {
       this.rig.place(name, position, orientation);
     }
     this.arms.place(joints);
-    const { points } = this;
-    points.hips = joints.hips;
-    points.head = head;
-    points.leftHand = joints.leftHand.position;
-    points.rightHand = joints.rightHand.position;
-    this.legs.apply(points, deltaSeconds, feet);
     this.rig.settle();
   }
 

@@ -19,6 +19,8 @@ import { meshesOf } from './scene-meshes';
 export interface LoadedAvatar {
   readonly name: string;
   readonly vrm: VRM;
+  /** What was assumed of the file, a sentence each. */
+  readonly notes: readonly string[];
   /** The index of each object's node in the file. */
   readonly nodeIndices: ReadonlyMap<Object3D, number>;
 }
@@ -52,9 +54,11 @@ export async function parseChecked(checked: Omit<CheckedAvatar, 'hash'>, options
   try {
     const { gltf, own } = await readScene(checked, options);
     // Files without a humanoid of their own need the matcher, which others do not load.
-    const vrm = own ?? (await import('./humanoid/create-humanoid')).createHumanoid(gltf.scene, name, options.bones);
+    const { vrm, notes } = own
+      ? { vrm: own, notes: [] }
+      : (await import('./humanoid/create-humanoid')).createHumanoid(gltf.scene, name, options.bones);
     settleRest(vrm, name);
-    return { name, vrm, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
+    return { name, vrm, notes, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
   } catch (error) {
     // three-vrm reads its extensions without a check.
     if (!(error instanceof TypeError || error instanceof RangeError)) throw error;

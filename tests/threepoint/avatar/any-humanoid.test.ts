@@ -1,4 +1,5 @@
-import { Matrix4, type SkinnedMesh, Vector3 } from 'three';
+import { Box3, Matrix4, type SkinnedMesh, Vector3 } from 'three';
+import type { BoneName } from 'threepoint/core';
 import { describe, expect, test } from 'vitest';
 import { gltfFaults } from '../../../src/threepoint/avatar/file/check-avatar';
 import { parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
@@ -117,12 +118,39 @@ describe('a body of other proportions', () => {
   });
 });
 
+test('thick soles stand on the floor, in shoes of any height', async () => {
+  for (const depth of [0, 0.08, 0.19]) {
+    const more = ['left', 'right'].map((side) => ({
+      called: `${side} sole`,
+      parent: `${side}Foot` as BoneName,
+      at: [side === 'left' ? 0.08 : -0.08, -depth, 0.02] as const,
+    }));
+    const { avatar } = await opened({ nameOf: mixamo('mixamorig:'), more });
+    hold(avatar, 1);
+    avatar.object.updateMatrixWorld(true);
+    const bounds = new Box3().setFromObject(avatar.object, true);
+    expect(bounds.min.y, `soles ${depth} m thick`).toBeCloseTo(0, 2);
+  }
+});
+
+test('a rig with very short legs keeps them, and its trunk its length', async () => {
+  const [hips, neck] = [0.92, 1.34];
+  const height = (y: number) => (y < hips ? y * 0.43 : y < neck ? 0.4 + ((y - hips) * 0.94) / (neck - hips) : y);
+  const body = await opened({ nameOf: vroid, place: (_, at) => void at.setY(height(at.y)) });
+  expectBody(body);
+  const { avatar } = body;
+  hold(avatar, 1);
+  const { hips: drawn, head, leftUpperLeg, leftLowerLeg } = avatar.jointPositions();
+  expect(drawn!.y / head!.y).toBeCloseTo(0.4 / 1.42, 1);
+  expect(distance(leftUpperLeg!, leftLowerLeg!) / head!.y).toBeCloseTo((0.43 * 0.39) / 1.42, 1);
+});
+
 describe('is refused with a sentence', () => {
   const refused = (options: RigOptions) => expect(parseAvatar(builtRig(options), 'person.glb')).rejects;
 
   test('a body that lacks a bone, by the bone’s name', async () => {
-    await refused({ nameOf: vroid, without: ['leftHand'] }).toThrow(
-      /person\.glb: its bones could not be matched to a humanoid: found .*; .*no leftHand\. Map/,
+    await refused({ nameOf: vroid, without: ['head', 'neck'] }).toThrow(
+      /person\.glb: its bones could not be matched to a humanoid: found .*; .*no head\. Map/,
     );
   });
 

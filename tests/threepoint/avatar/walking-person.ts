@@ -8,6 +8,7 @@ export const proportions: LegProportions = {
   upper: 0.42,
   lower: 0.42,
   ankleHeight: 0.08,
+  hipsFraction: 1,
 };
 
 /** Returns the legs that the page draws for a person of these measures. */

@@ -137,7 +137,7 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
     shoot(sheet, scene, fromInside(frame.head, down), { column: columns, row, text });
   }
   avatar.dispose();
-  return { loadMs, waving };
+  return { loadMs, waving, notes: avatar.notes };
 }
 
 window.makeSheet = async (address, name) => {
@@ -151,7 +151,7 @@ window.makeSheet = async (address, name) => {
   sheet.fillStyle = '#20242a';
   sheet.font = '15px sans-serif';
   let refused: string | null = null;
-  let drawn: Awaited<ReturnType<typeof draw>> = { loadMs: 0, waving: null };
+  let drawn: Awaited<ReturnType<typeof draw>> = { loadMs: 0, waving: null, notes: [] };
   try {
     drawn = await draw(sheet, address, name);
   } catch (error) {

@@ -11,7 +11,7 @@ import {
 import { type CheckedAvatar, MotionOnlyError } from 'threepoint/files';
 import { type Avatar, bodyLabelOf, weaveCloth } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
-import { fileNameOf } from 'threepoint-ui';
+import { fileNameOf, formatSentence } from 'threepoint-ui';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { SessionParts } from '../session/session-parts';
 import { ownColours } from '../session/settings';
@@ -290,6 +290,8 @@ export class UserAvatar {
     if (turn === this.#requested) {
       this.#pending = null;
       notices.withdraw('avatar');
+      if (avatar.notes.length > 0)
+        notices.show('info', [`${name} is shown.`, ...avatar.notes.map(formatSentence)].join(' '), 'avatar');
     }
     this.recolour();
     if (typeof state.worn === 'string') {

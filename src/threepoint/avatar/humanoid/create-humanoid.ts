@@ -2,10 +2,12 @@ import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/thr
 import { type Group, type Object3D, Vector3 } from 'three';
 import type { BoneMap, BoneName } from '../../core/humanoid/bones';
 import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
-import { humanoidProblem, matchHumanoid } from '../../core/humanoid/match-humanoid';
-import { fileBones, UnknownBonesError } from '../../core/humanoid/unknown-bones-error';
+import { type HumanoidMatch, humanoidProblem, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import { type FileBones, fileBones, UnknownBonesError } from '../../core/humanoid/unknown-bones-error';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
+import type { LoadedAvatar } from '../load-avatar';
 import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
+import { addHands } from './add-hands';
 import { assertNeededBones } from './needed-bones';
 
 /** Returns the name of a node in the file. three.js rewrites names and keeps the original in userData. */
@@ -89,22 +91,51 @@ export function skeletonOf(scene: Group, name: string, known: Iterable<Object3D>
   return { nodes, joints, isSkinned };
 }
 
-/**
- * Matches the bones of a scene to a humanoid. Throws an UnknownBonesError with the matched and the missing bones if
- * that fails.
- */
-function foundBones(scene: Group, name: string): ReadonlyMap<BoneName, Object3D> {
-  const { nodes, joints, isSkinned } = skeletonOf(scene, name);
-  const match = matchHumanoid(joints);
+/** The bones of a scene that is no VRM. */
+export interface SceneBones {
+  /** The bones as the file has them. */
+  readonly file: FileBones;
+  /** The nodes of the bones, with joints that were made. */
+  readonly bones: Bones;
+  /** The reason why they are no humanoid; null: they are one. */
+  readonly problem: string | null;
+  readonly notes: readonly string[];
+}
+
+type Bones = ReadonlyMap<BoneName, Object3D>;
+
+const nodesOf = ({ map }: HumanoidMatch, nodes: readonly Object3D[]): Bones =>
+  new Map(Object.entries(map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
+
+const madeNotes = (made: Bones): readonly string[] =>
+  [...made.values()].map(({ parent }) => `no hand follows ${nameOf(parent!)}: a joint was made where that arm ends`);
+
+/** Matches the bones of a scene to a humanoid, and adds hands where its arms end at the forearm. */
+export function matchScene(scene: Group, name: string): SceneBones {
+  const own = skeletonOf(scene, name);
+  const found = matchHumanoid(own.joints);
+  const made = addHands(scene, nodesOf(found, own.nodes));
+  const { nodes, joints } = made.size > 0 ? skeletonOf(scene, name, made.values()) : own;
+  const match = made.size > 0 ? matchHumanoid(joints) : found;
   const problem = humanoidProblem(match);
-  if (!problem) return new Map(Object.entries(match.map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
-  if (!isSkinned && Object.keys(match.map).length === 0) throw new Error(`${name}: ${noSkeleton}`);
+  if (problem && !own.isSkinned && Object.keys(match.map).length === 0) throw new Error(`${name}: ${noSkeleton}`);
+  const notes = [...match.notes, ...madeNotes(made)];
+  return { file: fileBones(own.joints, found.map), bones: nodesOf(match, nodes), problem, notes };
+}
+
+/**
+ * Returns the bones of a scene as a humanoid's. Throws an UnknownBonesError with the matched and the missing bones if
+ * they are none.
+ */
+function foundBones(scene: Group, name: string): Pick<SceneBones, 'bones' | 'notes'> {
+  const { file, bones, problem, notes } = matchScene(scene, name);
+  if (!problem) return { bones, notes };
   const advice = "Map them by hand: loadAvatar(source, {bones: {hips: '…', …}})";
-  throw new UnknownBonesError(`${name}: ${problem}. ${advice}`, fileBones(joints, match.map));
+  throw new UnknownBonesError(`${name}: ${problem}. ${advice}`, file);
 }
 
 /** Returns the nodes that a map names; of several with one name, one that moves skin. Throws if a node is missing. */
-function mappedBones(scene: Group, bones: BoneMap, name: string): ReadonlyMap<BoneName, Object3D> {
+function mappedNodes(scene: Group, bones: BoneMap, name: string): Bones {
   const skinned = skinBones(scene);
   // A mesh may have the name of the bone that moves it.
   const nodes = nodesByName(scene, (node) => skinned.has(node));
@@ -122,18 +153,26 @@ function mappedBones(scene: Group, bones: BoneMap, name: string): ReadonlyMap<Bo
   );
 }
 
+/** Returns the bones that a map names, with hands where it names forearms alone. */
+function mappedBones(scene: Group, map: BoneMap, name: string): Pick<SceneBones, 'bones' | 'notes'> {
+  const named = mappedNodes(scene, map, name);
+  const made = addHands(scene, named);
+  return { bones: new Map([...named, ...made]), notes: madeNotes(made) };
+}
+
 /**
- * Creates a VRM from a scene that is none. Its bones are those of `bones`, or matched ones. Throws an Error that names
- * the file and the missing bone.
+ * Creates a VRM from a scene that is none. Its bones are those of `given`, or matched ones; the notes are sentences on
+ * what was assumed. Throws an Error that names the file and the missing bone.
  */
-export function createHumanoid(scene: Group, name: string, given?: BoneMap): VRM {
+export function createHumanoid(scene: Group, name: string, given?: BoneMap): Pick<LoadedAvatar, 'vrm' | 'notes'> {
   scene.updateMatrixWorld(true);
-  const bones = given ? mappedBones(scene, given, name) : foundBones(scene, name);
+  const { bones, notes } = given ? mappedBones(scene, given, name) : foundBones(scene, name);
   assertNeededBones(name, (bone) => bones.has(bone));
   const humanBones = Object.fromEntries([...bones].map(([bone, node]) => [bone, { node }])) as unknown as VRMHumanBones;
   const humanoid = new VRMHumanoid(humanBones);
   scene.add(humanoid.normalizedHumanBonesRoot);
   const meshes = meshesOf(scene).map((mesh) => ({ meshes: [mesh], type: 'auto' }));
   const meta = { metaVersion: '1', name, authors: [], licenseUrl: '' } as unknown as VRM['meta'];
-  return new VRM({ scene, meta, humanoid, firstPerson: new VRMFirstPerson(humanoid, meshes as never) });
+  const vrm = new VRM({ scene, meta, humanoid, firstPerson: new VRMFirstPerson(humanoid, meshes as never) });
+  return { vrm, notes };
 }

@@ -1,10 +1,10 @@
 import { VRMUtils } from '@pixiv/three-vrm';
 import type { BoneName } from '../../core/humanoid/bones';
-import { type BoneMatch, humanoidProblem, matchHumanoid } from '../../core/humanoid/match-humanoid';
+import type { BoneMatch } from '../../core/humanoid/match-humanoid';
 import { type FileBones, fileBones } from '../../core/humanoid/unknown-bones-error';
 import type { CheckedAvatar } from '../file/check-avatar';
 import { type Decoders, readScene } from '../load-avatar';
-import { skeletonOf } from './create-humanoid';
+import { matchScene, skeletonOf } from './create-humanoid';
 
 /** The bones of a file, and whether it can be used without a bone map. */
 export interface ReadBones extends FileBones {
@@ -22,16 +22,16 @@ export async function readFileBones(checked: CheckedAvatar, decoders: Decoders):
     // three-vrm adds joints that the file does not have.
     own?.humanoid.normalizedHumanBonesRoot.removeFromParent();
     scene.updateMatrixWorld(true);
-    const stated = Object.entries(own?.humanoid.humanBones ?? {}).map(([bone, { node }]) => ({ bone, node }));
+    if (!own) {
+      const { file, problem } = matchScene(scene, checked.name);
+      return { ...file, accepted: problem === null };
+    }
+    const stated = Object.entries(own.humanoid.humanBones).map(([bone, { node }]) => ({ bone, node }));
     const { nodes, joints } = skeletonOf(
       scene,
       checked.name,
       stated.map(({ node }) => node),
     );
-    if (!own) {
-      const match = matchHumanoid(joints);
-      return { ...fileBones(joints, match.map), accepted: humanoidProblem(match) === null };
-    }
     const matches = stated.map(({ bone, node }): readonly [BoneName, BoneMatch] => [
       bone as BoneName,
       { joint: nodes.indexOf(node), confidence: 1, reason: 'the file states it' },

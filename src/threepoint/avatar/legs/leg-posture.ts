@@ -49,6 +49,8 @@ export interface LegProportions {
   readonly upper: number;
   readonly lower: number;
   readonly ankleHeight: number;
+  /** The height of its hips [fraction of the person's]; under 1 for legs that are very short. */
+  readonly hipsFraction: number;
 }
 
 /** One leg, floor frame [m]; rotations from T-pose. */
@@ -222,12 +224,13 @@ export class LegPosture {
 
   /** Writes the hip joint, the ankle and the foot before the leg's reach counts; returns the weight of the tracker. */
   private pinFoot(side: Side, hips: Vec3, step: Foot, tracked: TrackedFeet[Side], pinStep: number): number {
-    const { hipOffset, upper, lower } = this.proportions;
+    const { hipOffset, hipsFraction, upper, lower } = this.proportions;
     const { hip, ankle, foot } = this.own[side];
     const pin = this.pins[side];
     // Legs hang from a pelvis that tilts less than the lower back above it.
     setVec3(hip, sideSign(side) * hipOffset.x, hipOffset.y, hipOffset.z);
-    add(hips, rotate(level, hip, hip), hip);
+    rotate(level, hip, hip);
+    setVec3(hip, hips.x + hip.x, hips.y * hipsFraction + hip.y, hips.z + hip.z);
     copyVec3(step.position, ankle);
     multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
     copyVec3(ankle, estimated.position);

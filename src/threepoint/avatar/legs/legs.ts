@@ -19,18 +19,21 @@ const averageLegs: LegProportions = {
   upper: 0.42,
   lower: 0.42,
   ankleHeight: 0.08,
+  hipsFraction: 1,
 };
 
 const averageEyeHeight = 1.6;
 
-/** Returns the rig's own proportions below hips at this height [m], on a rig scaled by `rigScale`. */
-export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number): LegProportions {
+/**
+ * Returns the rig's own proportions below hips at a fraction of this height [m], on a rig scaled by `rigScale`.
+ */
+export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number, hipsFraction = 1): LegProportions {
   const hip = rig.rest('leftUpperLeg');
   const knee = rig.rest('leftLowerLeg');
   const ankle = rig.rest('leftFoot');
   const hips = rig.rest('hips');
   if (!hip || !knee || !ankle || !hips) return averageLegs;
-  const downScale = hipsHeight / hips.y;
+  const downScale = (hipsHeight * hipsFraction) / hips.y;
   return {
     // The rig faces +Z, poses face −Z.
     hipOffset: vec3(Math.abs(hip.x - hips.x) * rigScale, (hip.y - hips.y) * downScale, -(hip.z - hips.z) * rigScale),
@@ -38,6 +41,7 @@ export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number)
     // The ankle keeps the foot's own size; the rest of the difference goes to the shank.
     lower: knee.distanceTo(ankle) * downScale + ankle.y * (downScale - rigScale),
     ankleHeight: ankle.y * rigScale,
+    hipsFraction,
   };
 }
 
@@ -75,11 +79,11 @@ export class Legs {
   }
 
   /**
-   * Fits the legs to a person with eyes and hips at these heights [m], on a rig scaled by `rigScale`; returns the
-   * lengths of its bones.
+   * Fits the legs to a person with eyes and hips at these heights [m], on a rig scaled by `rigScale` whose hips are at
+   * a fraction of that height; returns the lengths of its bones.
    */
-  fit(eyeHeight: number, hipsHeight: number, rigScale: number): { readonly upper: number; readonly lower: number } {
-    const proportions = legProportionsOf(this.rig, hipsHeight, rigScale);
+  fit(eyeHeight: number, hipsHeight: number, rigScale: number, hipsFraction: number): LegProportions {
+    const proportions = legProportionsOf(this.rig, hipsHeight, rigScale, hipsFraction);
     this.posture.fit(proportions, eyeHeight);
     return proportions;
   }

@@ -21,6 +21,8 @@ import type { Rig } from './rig';
 
 /** The largest change of an upper arm's length [fraction] before the shoulder joint moves. */
 const armGives = 0.06;
+/** The least length of a rig's trunk between the body's hips and head [fraction of its own]; see `hipsFraction`. */
+const leastTrunk = 0.6;
 /** The base of a missing neck bone, from the middle of the shoulders to the head [fraction]. */
 const neckFraction = 0.3;
 /** The base of a missing clavicle bone, from the neck to the shoulder [fraction]. */
@@ -83,8 +85,8 @@ function shoulderShift(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: n
 
 /**
  * Adapts the trunk of a pose to a rig with other proportions than the estimated body: the rig keeps its neck, its
- * shoulders and the proportions of its spine. Pelvis, head, elbows and hands stay where they were estimated. If an arm
- * cannot reach its elbow, the shoulder joint moves.
+ * shoulders and the proportions of its spine. Head, elbows and hands stay where they were estimated, and so does the
+ * pelvis, unless the rig's legs are very short. If an arm cannot reach its elbow, the shoulder joint moves.
  */
 export class RigTrunk {
   private readonly links: Link[] = [];
@@ -94,6 +96,11 @@ export class RigTrunk {
   private readonly reached = vec3(0, 0, 0);
   private readonly neckOffset = vec3(0, 0, 0);
   private topVertebra: JointName = 'hips';
+  /**
+   * The height of the rig's hips [fraction of the body's]: 1, or the rig's own where its legs are so short that its
+   * trunk would have to be squeezed to less than `leastTrunk`.
+   */
+  hipsFraction = 1;
 
   constructor(private readonly rig: Rig) {
     let below: JointName = 'hips';
@@ -119,7 +126,10 @@ export class RigTrunk {
     const restNeck = rest('neck') ?? lerp(lerp(left, right, 0.5), head, neckFraction);
     subtract(head, restNeck, this.neckToHead);
     // The spine is scaled to the distance from pelvis to head; its joints keep their proportions.
-    const wanted = tPose.head.position.y - this.neckToHead.y - tPose.hips.position.y;
+    const hipsHeight = tPose.hips.position.y;
+    const top = tPose.head.position.y - this.neckToHead.y;
+    this.hipsFraction = top - hipsHeight < leastTrunk * (restNeck.y - hips.y) ? hips.y / hipsHeight : 1;
+    const wanted = top - hipsHeight * this.hipsFraction;
     const fraction = Math.max(0.2, wanted / Math.max(1e-3, restNeck.y - hips.y));
     let below = hips;
     for (const link of this.links) {
@@ -141,6 +151,8 @@ export class RigTrunk {
 
   /** Moves the joints of a pose, floor frame, to the positions for this rig. */
   apply(joints: MutableJointPoses): void {
+    const { position: hips } = joints.hips;
+    setVec3(hips, hips.x, hips.y * this.hipsFraction, hips.z);
     subtract(joints.head.position, rotate(joints.neck.orientation, this.neckToHead, neck), neck);
     for (const { name, below, offset } of this.links) {
       const from = joints[below];

@@ -20,6 +20,8 @@ const limbParts: Readonly<Record<LimbKind, readonly [Part, Part, Part]>> = {
   leg: ['upperLeg', 'lowerLeg', 'foot'],
 };
 
+const fingerParts = ['thumb', 'index', 'middle', 'ring', 'little', 'finger'] as const satisfies readonly Part[];
+
 /** The largest number of joints of a chain that is searched for a limb. */
 const longestChain = 16;
 /** The shortest limb as a fraction of the skeleton's longest chain. */
@@ -51,7 +53,7 @@ function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
   const along = [0];
   for (const joint of chain.slice(1)) along.push(along.at(-1)! + tree.segments[joint]!);
   const total = along.at(-1)!;
-  const short = kind === 'leg' && chain.length === 2 ? legWithoutFoot(tree, chain) : null;
+  const short = limbWithoutEnd(tree, chainOfAll, kind);
   if (short) return short;
   if (chain.length < 3 || !(total > 0)) return null;
   const votes = limbParts[kind].map((part) => chain.map((joint) => tree.vote(joint, part))) as [
@@ -88,10 +90,18 @@ function findLimb(tree: JointTree, first: number, kind: LimbKind): Limb | null {
   return best;
 }
 
-/** Returns thigh and shin of a leg whose foot hangs from a control; null: their names do not show them. */
-function legWithoutFoot(tree: JointTree, chain: readonly number[]): Limb | null {
-  const named = tree.vote(chain[0]!, 'upperLeg') > 0.7 && tree.vote(chain[1]!, 'lowerLeg') > 0.5;
-  return named ? { chain, at: [0, 1, 1], shape: 0.8, names: 0.6 } : null;
+/**
+ * Returns thigh and shin of a leg whose foot hangs from a control, or both bones of an arm that ends at the forearm or
+ * whose fingers leave it; null: their names do not show them.
+ */
+function limbWithoutEnd(tree: JointTree, chain: readonly number[], kind: LimbKind): Limb | null {
+  const [upper, lower] = limbParts[kind];
+  const first = chain.findIndex((joint) => tree.vote(joint, upper) > 0.7);
+  const last = chain[first + 1];
+  if (first < 0 || last === undefined || !(tree.vote(last, lower) > 0.5)) return null;
+  const after = chain[first + 2];
+  const isEnd = after === undefined || (kind === 'arm' && fingerParts.some((part) => tree.vote(after, part) > 0.5));
+  return isEnd ? { chain, at: [first, first + 1, first + 1], shape: 0.8, names: 0.6 } : null;
 }
 
 /** Returns the first two joints of a chain as a limb without its end; null: there is one joint alone. */
@@ -171,7 +181,9 @@ export function findPairs(tree: JointTree, kind: LimbKind, short = false): reado
     const branches = tree.children[root]!.filter(
       (child) =>
         tree.segments[child]! + tree.heights[child]! >= shortestLimb * tree.size &&
-        tree.children[child]!.some((next) => kind === 'leg' || short || tree.children[next]!.length > 0),
+        tree.children[child]!.some(
+          (next) => kind === 'leg' || short || tree.children[next]!.length > 0 || tree.vote(next, 'lowerArm') > 0.5,
+        ),
     );
     if (branches.length < 2) continue;
     const limbs = branches

@@ -241,7 +241,7 @@ class Matcher {
     const before = chain.slice(0, at[0]);
     const clavicle = before.find((joint) => tree.vote(joint, 'shoulder') > 0.5) ?? before[0];
     if (clavicle !== undefined) this.#take(`${side}Shoulder`, clavicle, 'shoulder', 'between spine and upper arm');
-    for (const { bone, joint, reason, confidence } of hand === elbow ? [] : matchFingers(tree, hand))
+    for (const { bone, joint, reason, confidence } of matchFingers(tree, hand))
       this.map[`${side}${bone}` as BoneName] = { joint, reason, confidence };
   }
 
