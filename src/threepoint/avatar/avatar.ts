@@ -31,6 +31,7 @@ import { type AvatarJoint, Rig } from './rig/rig';
 import { RigTrunk } from './rig/rig-trunk';
 import { spreadLimbs } from './rig/spread-limb-weights';
 import { Springs } from './rig/springs';
+import { TrunkShape } from './rig/trunk-shape';
 import { meshesOf } from './scene-meshes';
 
 /**
@@ -162,6 +163,7 @@ class VrmAvatar implements Avatar {
   private readonly rig: Rig;
   private readonly idle: IdleMotion;
   private readonly trunk: RigTrunk;
+  private readonly trunkShape: TrunkShape;
   private readonly arms: ArmHelperJoints;
   private readonly legs: Legs;
   private readonly fingers: Readonly<Record<Side, HandFingers>>;
@@ -191,6 +193,7 @@ class VrmAvatar implements Avatar {
     this.rig = rig;
     this.arms = arms;
     this.trunk = new RigTrunk(this.rig);
+    this.trunkShape = new TrunkShape(vrm.scene, this.rig);
     this.legs = legs;
     this.fingers = recordOf(sides, (side) => new HandFingers(vrm, side));
     this.meshes = new BodyMeshes(meshes, this.rig);
@@ -212,6 +215,7 @@ class VrmAvatar implements Avatar {
     // Rig to body, the same in all directions; limbs add their own stretch.
     this.scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
     this.trunk.fit(tPose, this.scale);
+    this.trunkShape.fit(this.scale);
     const hipsHeight = tPose.hips.position.y;
     const legs = this.legs.fit(calibration.eyeHeight, hipsHeight, this.scale, this.trunk.hipsFraction);
     this.rig.fit(tPose, legs, this.scale);
@@ -260,6 +264,7 @@ class VrmAvatar implements Avatar {
     // The legs step under the estimated hips; the trunk may lower them to the rig's.
     this.legs.apply(points, deltaSeconds, feet);
     this.trunk.apply(joints);
+    this.trunkShape.keepOut(joints);
     this.arms.untwist(joints);
     for (let i = 0; i < jointNames.length; i++) {
       const name = jointNames[i]!;

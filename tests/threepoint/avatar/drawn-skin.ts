@@ -16,11 +16,15 @@ type Wrists = Readonly<Record<Side, Pose<'floor'>>>;
 /** Closes a hand round something. */
 type Grasp = (holding: ObjectHolds, side: Side, wrist: Pose<'floor'>, target: MutableHandShape) => void;
 
+/** Returns the file of a built-in body. */
+export function builtInFile(body: string): ArrayBuffer {
+  const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
+  return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
+}
+
 /** Loads a built-in body for that person. */
 export async function builtInBody(body: string): Promise<Avatar> {
-  const file = readFileSync(new URL(`../../../public/avatars/${body}.vrm`, import.meta.url));
-  const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
-  const avatar = createAvatar(await parseAvatar(bytes, `${body}.vrm`));
+  const avatar = createAvatar(await parseAvatar(builtInFile(body), `${body}.vrm`));
   avatar.setCalibration(wearer);
   return avatar;
 }

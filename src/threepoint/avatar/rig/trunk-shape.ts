@@ -1,0 +1,201 @@
+import { type BufferGeometry, type Object3D, type SkinnedMesh, Vector3 } from 'three';
+import type { MutableJointPoses } from '../../core/body/forward-kinematics';
+import { fromAxisAngle, multiply, quat, rotate } from '../../core/math/quat';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  dot,
+  forward,
+  length,
+  normalise,
+  right,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../../core/math/vec3';
+import { skinnedMeshesOf } from '../scene-meshes';
+import type { Rig } from './rig';
+
+/** The part of a trunk that is measured [fraction of the way from the hips to the neck], in so many slices. */
+const lowest = -0.3;
+const highest = 1.1;
+const slices = 24;
+/** The directions in which a slice is measured, a turn in equal steps. */
+const directions = Array.from({ length: 16 }, (_, k) => {
+  const angle = (k * 2 * Math.PI) / 16;
+  return { right: Math.cos(angle), ahead: Math.sin(angle) };
+});
+/** Skin counts to the trunk that moves with its bones by more than this share. */
+const trunkShare = 0.7;
+/** Half the thickness of an arm at the elbow [m]. */
+const armRadius = 0.03;
+/** The angles by which an arm is turned to leave the trunk: multiples of a step [rad], refined by halving. */
+const turnStep = Math.PI / 12;
+const halvings = 6;
+
+const trunkNames = ['hips', 'spine', 'chest', 'upperChest'] as const;
+
+// Scratch variables of one call.
+const line = vec3(0, 0, 0);
+const from = vec3(0, 0, 0);
+const toRight = vec3(0, 0, 0);
+const toFront = vec3(0, 0, 0);
+const axis = vec3(0, 0, 0);
+const upperArm = vec3(0, 0, 0);
+const elbow = vec3(0, 0, 0);
+const turn = quat(0, 0, 0, 1);
+
+/**
+ * The skin of a rig's trunk, out of which it keeps elbows. A slice level with the floor at rest has its extent in sixteen
+ * directions, so that the shape is the convex hull of each slice.
+ */
+export class TrunkShape {
+  /** Extents from the line of hips and neck [m of the rig at rest]; −∞: no skin. */
+  private readonly extents = new Float64Array(slices * directions.length).fill(Number.NEGATIVE_INFINITY);
+  private scale = 1;
+
+  constructor(
+    scene: Object3D,
+    private readonly rig: Rig,
+  ) {
+    const bones = new Set(trunkNames.flatMap((name) => rig.bones.get(name)?.node ?? []));
+    for (const mesh of skinnedMeshesOf(scene)) this.measure(mesh, bones);
+  }
+
+  /** Sets the scale of the rig. */
+  fit(scale: number): void {
+    this.scale = scale;
+  }
+
+  /**
+   * Turns the arms of a pose, floor frame, about the lines from shoulder to hand until their elbows are outside. Hands
+   * stay. An arm that cannot leave the trunk gets the furthest way out.
+   */
+  keepOut(joints: MutableJointPoses): void {
+    this.keepArmOut(joints, joints.leftUpperArm, joints.leftLowerArm, joints.leftHand.position);
+    this.keepArmOut(joints, joints.rightUpperArm, joints.rightLowerArm, joints.rightHand.position);
+  }
+
+  private keepArmOut(
+    joints: MutableJointPoses,
+    upper: MutableJointPoses['leftUpperArm'],
+    lower: MutableJointPoses['leftLowerArm'],
+    hand: Vec3,
+  ): void {
+    const inside = this.distanceTo(lower.position, joints);
+    if (inside >= armRadius) return;
+    subtract(hand, upper.position, axis);
+    if (length(axis) < 1e-3) return;
+    normalise(axis, right, axis);
+    subtract(lower.position, upper.position, upperArm);
+    const at = (angle: number): number => {
+      add(upper.position, rotate(fromAxisAngle(axis, angle, turn), upperArm, elbow), elbow);
+      return this.distanceTo(elbow, joints);
+    };
+    const sign = at(0.01) >= at(-0.01) ? 1 : -1;
+    let [best, furthest] = [0, inside];
+    for (let step = 1; step <= 12 && furthest < armRadius; step++) {
+      const angle = sign * step * turnStep;
+      const far = at(angle);
+      if (far > furthest) [best, furthest] = [angle, far];
+    }
+    if (furthest >= armRadius) {
+      let near = best - sign * turnStep;
+      for (let i = 0; i < halvings; i++) {
+        const middle = (near + best) / 2;
+        if (at(middle) >= armRadius) best = middle;
+        else near = middle;
+      }
+    }
+    at(best);
+    copyVec3(elbow, lower.position);
+    multiply(turn, upper.orientation, upper.orientation);
+    multiply(turn, lower.orientation, lower.orientation);
+  }
+
+  /** Returns how far a point is outside of the trunk of a pose [m]; negative: inside. */
+  private distanceTo(point: Vec3, { hips, neck, chest }: MutableJointPoses): number {
+    subtract(neck.position, hips.position, line);
+    subtract(point, hips.position, from);
+    const height = dot(from, line) / dot(line, line);
+    const slice = ((height - lowest) / (highest - lowest)) * (slices - 1);
+    if (!(slice >= 0 && slice < slices - 1)) return Number.POSITIVE_INFINITY;
+    addScaled(from, line, -height, from);
+    const x = dot(from, rotate(chest.orientation, right, toRight));
+    const z = dot(from, rotate(chest.orientation, forward, toFront));
+    const below = Math.floor(slice) * directions.length;
+    const above = slice - Math.floor(slice);
+    let furthest = Number.NEGATIVE_INFINITY;
+    for (let k = 0; k < directions.length; k++) {
+      const way = directions[k]!;
+      const [a, b] = [this.extents[below + k]!, this.extents[below + directions.length + k]!];
+      // A slice without skin has no trunk, and a slice beside it is taken as it is.
+      const extent = a === Number.NEGATIVE_INFINITY ? b : b === Number.NEGATIVE_INFINITY ? a : a + (b - a) * above;
+      furthest = Math.max(furthest, x * way.right + z * way.ahead - extent * this.scale);
+    }
+    return furthest;
+  }
+
+  /** Measures the trunk's triangles along their edges. */
+  private measure(mesh: SkinnedMesh, bones: ReadonlySet<Object3D>): void {
+    const { geometry } = mesh;
+    const isTrunk = trunkVertices(
+      geometry,
+      mesh.skeleton.bones.map((bone) => bones.has(bone)),
+    );
+    if (!isTrunk) return;
+    const corners = geometry.index!;
+    const [start, end] = [this.rig.rest('hips')!, this.rig.rest('neck') ?? this.rig.rest('head')!];
+    const way = end.clone().sub(start);
+    const places = new Float64Array(3 * isTrunk.length);
+    const place = new Vector3();
+    for (let vertex = 0; vertex < isTrunk.length; vertex++) {
+      if (!isTrunk[vertex]) continue;
+      mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld).sub(start);
+      const height = place.dot(way) / way.lengthSq();
+      place.addScaledVector(way, -height);
+      // The rig faces +Z at rest: its right is −X.
+      places[3 * vertex] = ((height - lowest) / (highest - lowest)) * (slices - 1);
+      places[3 * vertex + 1] = -place.x;
+      places[3 * vertex + 2] = place.z;
+    }
+    for (let corner = 0; corner < corners.count; corner++) {
+      const first = corners.getX(corner);
+      const second = corners.getX(corner % 3 === 2 ? corner - 2 : corner + 1);
+      if (isTrunk[first] && isTrunk[second]) this.addEdge(places, 3 * first, 3 * second);
+    }
+  }
+
+  /** Adds an edge [slice, right, ahead] to the slices that it crosses, and its first corner to the nearest. */
+  private addEdge(places: Float64Array, first: number, second: number): void {
+    const [a, b] = [places[first]!, places[second]!];
+    this.addPoint(Math.round(a), places[first + 1]!, places[first + 2]!);
+    for (let slice = Math.ceil(Math.min(a, b)); slice <= Math.max(a, b); slice++) {
+      const share = a === b ? 0 : (slice - a) / (b - a);
+      const x = places[first + 1]! + share * (places[second + 1]! - places[first + 1]!);
+      this.addPoint(slice, x, places[first + 2]! + share * (places[second + 2]! - places[first + 2]!));
+    }
+  }
+
+  private addPoint(slice: number, x: number, z: number): void {
+    if (!(slice >= 0 && slice < slices)) return;
+    for (let k = 0; k < directions.length; k++) {
+      const at = slice * directions.length + k;
+      const way = directions[k]!;
+      this.extents[at] = Math.max(this.extents[at]!, x * way.right + z * way.ahead);
+    }
+  }
+}
+
+/** Returns which vertices move with the trunk; null: none do. */
+function trunkVertices({ attributes }: BufferGeometry, isTrunkBone: readonly boolean[]): readonly boolean[] | null {
+  const { skinIndex, skinWeight } = attributes;
+  if (!isTrunkBone.includes(true) || !skinIndex || !skinWeight) return null;
+  return Array.from({ length: skinWeight.count }, (_, vertex) => {
+    let share = 0;
+    for (let i = 0; i < skinWeight.itemSize; i++)
+      if (isTrunkBone[skinIndex.getComponent(vertex, i)]) share += skinWeight.getComponent(vertex, i);
+    return share > trunkShare;
+  });
+}
