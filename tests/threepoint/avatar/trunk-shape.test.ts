@@ -84,7 +84,7 @@ describe.each([
   ['stout', 1.5],
   ['mannequin', 1.5],
 ])('%s, with a trunk %d times as wide', (body, times) => {
-  test('keeps elbows at most 1 cm in its trunk in every posture, and hands where they are', async () => {
+  test('keeps hands in place, and elbows at most 1 cm in its trunk', async () => {
     const loaded = await widened(body, times);
     const avatar = createAvatar(loaded);
     for (const [index, { name, frame }] of [...postures, ...trackedPostures].entries()) {

@@ -23,8 +23,8 @@ const fewestFingers = 3;
 const chainsOf = ({ children }: Object3D) => children.filter((child) => child.children.length > 0);
 
 /**
- * Returns the place where a forearm's skin ends; null: it moves no skin. It runs from the elbow towards the middle of its
- * skin; where that is the elbow itself, it continues the upper arm.
+ * Returns the place where a forearm's skin ends; null: it moves no skin. It runs from the elbow towards the middle of
+ * its skin; where that is the elbow itself, it continues the upper arm.
  */
 function endOfSkin(scene: Object3D, upperArm: Object3D, forearm: Object3D): Vector3 | null {
   const skin = skinMovedBy(scene, new Set([forearm]));

@@ -47,8 +47,8 @@ const elbow = vec3(0, 0, 0);
 const turn = quat(0, 0, 0, 1);
 
 /**
- * The skin of a rig's trunk, out of which it keeps elbows. A slice level with the floor at rest has its extent in sixteen
- * directions, so that the shape is the convex hull of each slice.
+ * The skin of a rig's trunk, out of which it keeps elbows. A slice level with the floor at rest has its extent in
+ * sixteen directions, so that the shape is the convex hull of each slice.
  */
 export class TrunkShape {
   /** Extents from the line of hips and neck [m of the rig at rest]; −∞: no skin. */
