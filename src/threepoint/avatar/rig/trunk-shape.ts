@@ -89,29 +89,33 @@ export class TrunkShape {
     if (length(axis) < 1e-3) return;
     normalise(axis, right, axis);
     subtract(lower.position, upper.position, upperArm);
-    const at = (angle: number): number => {
-      add(upper.position, rotate(fromAxisAngle(axis, angle, turn), upperArm, elbow), elbow);
-      return this.distanceTo(elbow, joints);
-    };
-    const sign = at(0.01) >= at(-0.01) ? 1 : -1;
-    let [best, furthest] = [0, inside];
-    for (let step = 1; step <= 12 && furthest < armRadius; step++) {
+    const shoulder = upper.position;
+    const sign = this.distanceAt(0.01, shoulder, joints) >= this.distanceAt(-0.01, shoulder, joints) ? 1 : -1;
+    let best = 0;
+    let furthest = inside;
+    for (let step = 1; step <= Math.PI / turnStep && furthest < armRadius; step++) {
       const angle = sign * step * turnStep;
-      const far = at(angle);
-      if (far > furthest) [best, furthest] = [angle, far];
+      const far = this.distanceAt(angle, shoulder, joints);
+      if (far <= furthest) continue;
+      best = angle;
+      furthest = far;
     }
-    if (furthest >= armRadius) {
-      let near = best - sign * turnStep;
-      for (let i = 0; i < halvings; i++) {
-        const middle = (near + best) / 2;
-        if (at(middle) >= armRadius) best = middle;
-        else near = middle;
-      }
+    let near = best - sign * turnStep;
+    for (let i = 0; i < halvings && furthest >= armRadius; i++) {
+      const middle = (near + best) / 2;
+      if (this.distanceAt(middle, shoulder, joints) >= armRadius) best = middle;
+      else near = middle;
     }
-    at(best);
+    this.distanceAt(best, shoulder, joints);
     copyVec3(elbow, lower.position);
     multiply(turn, upper.orientation, upper.orientation);
     multiply(turn, lower.orientation, lower.orientation);
+  }
+
+  /** Turns the arm in the scratch variables by an angle [rad]; returns how far its elbow is outside [m]. */
+  private distanceAt(angle: number, shoulder: Vec3, joints: MutableJointPoses): number {
+    add(shoulder, rotate(fromAxisAngle(axis, angle, turn), upperArm, elbow), elbow);
+    return this.distanceTo(elbow, joints);
   }
 
   /** Returns how far a point is outside of the trunk of a pose [m]; negative: inside. */
