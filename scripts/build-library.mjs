@@ -35,11 +35,18 @@ const copied = {
   LICENSE: 'LICENSE',
 };
 
+/** Returns the changelog of a package: its own, or before its second release that of all packages. */
+export function changelogOf(folder) {
+  const file = `${folder}/CHANGELOG.md`;
+  return existsSync(join(root, file)) ? file : 'CHANGELOG.md';
+}
+
 /** The documents of the package: path in the package to path in the repository. */
 const documents = {
   'README.md': 'src/threepoint/README.md',
   'models/README.md': 'src/threepoint/model-card.md',
   'models/accuracy.md': 'docs/accuracy.md',
+  'CHANGELOG.md': changelogOf('src/threepoint'),
 };
 
 /**

@@ -4,7 +4,7 @@
 import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { isAbsolute, join } from 'node:path';
 import { rolldown } from 'rolldown';
-import { buildLibrary, documentInPackage, entriesOf, writeDeclarations } from './build-library.mjs';
+import { buildLibrary, changelogOf, documentInPackage, entriesOf, writeDeclarations } from './build-library.mjs';
 import { mainOf, root } from './run-command.mjs';
 import { buildPackage, isPackageCurrent } from './source-hash.mjs';
 
@@ -33,10 +33,18 @@ async function writeCode(out, input, platform) {
   await build.close();
 }
 
-/** Returns the manifest to publish: without sources and internal modules. */
-function published({ private: _, devDependencies: __, publishConfig, dependencies, ...rest }) {
+/**
+ * Returns the manifest to publish: without sources and internal modules. Peers of this repository may be of any version
+ * that breaks nothing.
+ */
+function published({ private: _, devDependencies: __, publishConfig, dependencies, peerDependencies, ...rest }) {
   const imported = Object.entries(dependencies).filter(([name]) => !isOwn(name));
-  return { ...rest, ...publishConfig, dependencies: Object.fromEntries(imported) };
+  const peers = Object.entries(peerDependencies).map(([name, range]) => [name, name in packages ? `^${range}` : range]);
+  return {
+    ...{ ...rest, ...publishConfig },
+    dependencies: Object.fromEntries(imported),
+    peerDependencies: Object.fromEntries(peers),
+  };
 }
 
 /** The declarations of all packages, which the compiler writes at once: those of one import those of another. */
@@ -55,9 +63,14 @@ function bundle(name, platform) {
     await declared;
     cpSync(join(declarations, name), join(out, 'types'), { recursive: true });
     copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
-    const readme = readFileSync(join(root, source, 'README.md'), 'utf8');
-    const documents = { 'README.md': `${source}/README.md`, LICENSE: 'LICENSE' };
-    writeFileSync(join(out, 'README.md'), documentInPackage(readme, 'README.md', documents));
+    const documents = {
+      ...{ 'README.md': `${source}/README.md`, 'CHANGELOG.md': changelogOf(source) },
+      LICENSE: 'LICENSE',
+    };
+    for (const to of ['README.md', 'CHANGELOG.md']) {
+      const text = readFileSync(join(root, documents[to]), 'utf8');
+      writeFileSync(join(out, to), documentInPackage(text, to, documents));
+    }
     writeFileSync(join(out, 'package.json'), `${JSON.stringify(published(own), null, 2)}\n`);
   });
 }

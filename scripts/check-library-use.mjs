@@ -1,13 +1,20 @@
-// Uses the packed packages as their users do. Compiles the consumers in examples/ against them, with the module
-// resolution of bundlers and of Node, strictly and with declarations checked; runs the programs of Node there.
-import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+// Uses the packed packages as their users do, in an empty folder outside the repository. Compiles the consumers in
+// examples/ against them, with the module resolution of bundlers and of Node, strictly and with declarations checked;
+// runs the programs of Node there.
+import { copyFileSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { build } from 'esbuild';
 import { rolldown } from 'rolldown';
 import { packages } from './build-packages.mjs';
 import { main, outputOf, root, run, SetupError } from './run-command.mjs';
 
-const folder = join(root, 'artifacts/library-consumer');
+const folder = mkdtempSync(join(tmpdir(), 'threepoint-consumer-'));
+/** What consumers install beside the packages, in the versions of this repository. */
+const beside = [
+  ...['three', '@types/three', '@pixiv/three-vrm', 'onnxruntime-web', 'react', '@types/react', '@react-three/fiber'],
+  ...['typescript', '@types/node'],
+];
 const resolutions = [
   { module: 'preserve', moduleResolution: 'bundler' },
   { module: 'node16', moduleResolution: 'node16' },
@@ -16,15 +23,21 @@ const resolutions = [
 /** The consumers, and the types of its surroundings that each may use. */
 const consumers = { 'consumer.ts': [], 'rooms-consumer.ts': [], 'relay-consumer.ts': ['node'] };
 
-/** Installs a package as `npm install` does; what it depends on resolves to the repository's own packages. */
-async function unpack(name) {
-  const into = join(folder, 'node_modules', name);
-  mkdirSync(into, { recursive: true });
-  const pack = ['pack', join(root, packages[name].folder), '--pack-destination', into];
-  await outputOf('npm', pack, `${name} could not be packed`);
-  const [tarball] = readdirSync(into);
-  const unpack = ['-xzf', join(into, tarball), '-C', into, '--strip-components=1'];
-  await outputOf('tar', unpack, `${tarball} could not be unpacked`);
+/** Packs the packages and installs them with what consumers install beside them. */
+async function install() {
+  for (const [name, { folder: built }] of Object.entries(packages)) {
+    const pack = ['pack', join(root, built), '--pack-destination', folder];
+    await outputOf('npm', pack, `${name} could not be packed`);
+  }
+  const tarballs = readdirSync(folder).filter((file) => file.endsWith('.tgz'));
+  writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
+  const exact = beside.map((name) => {
+    const { version } = JSON.parse(readFileSync(join(root, 'node_modules', name, 'package.json'), 'utf8'));
+    return `${name}@${version}`;
+  });
+  const options = ['--prefix', folder, '--no-audit', '--no-fund', '--prefer-offline'];
+  const files = tarballs.map((file) => join(folder, file));
+  await outputOf('npm', ['install', ...options, ...files, ...exact], 'the packages could not be installed');
 }
 
 /**
@@ -34,9 +47,8 @@ const foreign = /^[^(]*\bnode_modules[\\/]@pixiv[\\/]/;
 
 /** Returns the compiler's errors in the package and in the consumer. */
 async function compile(config) {
-  const { code, output } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', config], {
-    capture: true,
-  });
+  const compiler = join(folder, 'node_modules/typescript/bin/tsc');
+  const { code, output } = await run(process.execPath, [compiler, '-p', config], { capture: true });
   const faults = output.split(/\n(?=\S)/).filter((fault) => fault.trim() !== '' && !foreign.test(fault));
   if (code !== 0 && !/error TS/.test(output)) throw new SetupError(`The compiler broke down:\n${output}`);
   return faults;
@@ -103,11 +115,13 @@ async function importWithoutBrowser() {
 }
 
 await main(async () => {
-  rmSync(folder, { recursive: true, force: true });
-  for (const name of Object.keys(packages)) await unpack(name);
-  writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
-  for (const [consumer, types] of Object.entries(consumers)) await compileConsumer(consumer, types);
-  for (const program of ['in-node.mjs', 'rooms-in-node.mjs']) await runProgram(program);
-  await bundleWeights();
-  await importWithoutBrowser();
+  try {
+    await install();
+    for (const [consumer, types] of Object.entries(consumers)) await compileConsumer(consumer, types);
+    for (const program of ['in-node.mjs', 'rooms-in-node.mjs']) await runProgram(program);
+    await bundleWeights();
+    await importWithoutBrowser();
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
 });
