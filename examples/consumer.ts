@@ -1,6 +1,7 @@
 // Every entry of the package, compiled against its source by `npm run types` and as packed by `npm run test:full`.
 import { createElement, type RefObject } from 'react';
 import type { Scene, WebGLRenderer } from 'three';
+import type { WebGPURenderer } from 'three/webgpu';
 import {
   type AvatarPose,
   Body,
@@ -30,7 +31,7 @@ import { type Avatar, avatarMotionWriter, BodyTracker, loadAvatar } from 'threep
 import { type BodyTrackers, pinning, trackerAtJoint } from 'threepoint/trackers';
 
 /** With three.js, its session and an avatar. */
-export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promise<BodyTracker> {
+export async function inTheHeadset(renderer: WebGLRenderer | WebGPURenderer, scene: Scene): Promise<BodyTracker> {
   const avatar: Avatar = await loadAvatar('/avatars/me.glb', { bones: { hips: 'Hips', head: 'Head' } });
   const body = new BodyTracker(renderer, { avatar, estimator: 'learned', calibration: 'auto', autoGrow: false });
   body.addEventListener('calibrated', ({ calibration, source }) => console.log(calibration.eyeHeight, source));

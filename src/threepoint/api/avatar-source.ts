@@ -9,6 +9,7 @@ import { assertOptions } from './assert-options';
 import { readBundledMannequin } from './bundled/mannequin';
 import { startValidator } from './bundled/validator';
 import type { MotionWriter } from './motion-file';
+import { warnOfThreadCheck } from './warnings';
 
 export interface LoadAvatarOptions {
   /**
@@ -49,6 +50,7 @@ export async function loadAvatar(source: AvatarSource, options: LoadAvatarOption
 
 /** Checks a file in a worker, or on the calling thread if no worker starts. */
 const checkUntrusted = /* @__PURE__ */ createWorkerCheck(startValidator, async (...file) => {
+  if ('document' in globalThis) warnOfThreadCheck();
   const { checkAvatar } = await import('../avatar/file/check-avatar');
   return checkAvatar(...file);
 });
@@ -89,14 +91,16 @@ async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayB
     return { name, bytes: await new Blob([source as BlobPart]).arrayBuffer() };
   }
   if (typeof source !== 'string' && !(source instanceof URL)) {
+    const what = source === undefined || source === null ? 'missing' : 'neither an address nor a file nor bytes';
     throw new TypeError(
-      "The avatar's source is missing. Pass its address, file or bytes: loadAvatar('/avatars/me.vrm').",
+      `The avatar's source is ${what}. Pass its address, file or bytes: loadAvatar('/avatars/me.vrm').`,
     );
   }
   const address = String(source);
   const name = nameOfAddress(address);
   const response = await fetch(address).catch((error: unknown) => {
-    throw new Error(`${name}: could not be fetched (${reasonOf(error)})`);
+    const advice = 'Is it there, and does its server allow this page (CORS)?';
+    throw new Error(`${name}: could not be fetched (${reasonOf(error)}). ${advice}`);
   });
   if (!response.ok) throw new Error(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
   return { name, bytes: await response.arrayBuffer() };

@@ -1,4 +1,4 @@
-import { type BaseEvent, EventDispatcher, type EventListener, Group, type Object3D, type WebGLRenderer } from 'three';
+import { type BaseEvent, EventDispatcher, type EventListener, Group, type Object3D } from 'three';
 import type { Avatar } from '../avatar/avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
@@ -6,12 +6,17 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import type { Pointing } from '../xr/pointing';
-import { TrackedSession } from '../xr/tracked-session';
+import { type DrawingSpace, TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
 import { Body, type BodyOptions } from './body';
 import { type BodyEvents, eventNames, bodyOptions as solverOptions } from './body-solver';
 import { loadLearned } from './load-learned';
-import { warnAfterDispose, warnOfFallback } from './warnings';
+import { warnAfterDispose, warnOfFallback, warnOfXrDisabled } from './warnings';
+
+/** The part of a three.js renderer that a tracker uses: `WebGLRenderer` and `WebGPURenderer` have it. */
+export interface XrRenderer {
+  readonly xr: DrawingSpace & { readonly enabled: boolean; getSession(): XRSession | null };
+}
 
 export interface BodyTrackerOptions<Shown extends Avatar | null = Avatar> extends Omit<BodyOptions, 'events'> {
   /**
@@ -47,9 +52,10 @@ const trackerOptions = [
 /** The avatars that belong to a tracker, or were disposed of by one. */
 const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
 
-function assertRenderer(renderer: WebGLRenderer | undefined): void {
-  if (renderer) return;
-  throw new TypeError('renderer is missing. Pass the one that draws: new BodyTracker(renderer, { avatar }).');
+function assertRenderer(renderer: XrRenderer | undefined): void {
+  if (renderer?.xr) return;
+  const what = renderer ? 'no renderer of three.js: it has no “xr”' : 'missing';
+  throw new TypeError(`renderer is ${what}. Pass the one that draws: new BodyTracker(renderer, { avatar }).`);
 }
 
 /** Throws an Error if `avatar` is no avatar, or belongs to another tracker. */
@@ -96,7 +102,7 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
   readonly body: Body;
   /** Whether the body that the device tracks is read in the sessions that start from now on. */
   deviceBody: boolean;
-  readonly #renderer: WebGLRenderer;
+  readonly #renderer: XrRenderer;
   readonly #pointing: ((session: XRSession) => Pointing) | undefined;
   readonly #trackers: (() => BodyTrackers | null) | undefined;
   /** The renderer's session and its tracking; null: there is none. */
@@ -113,11 +119,11 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
    * Throws a RangeError for a calibration that no person has or an unknown estimator; a TypeError for a missing avatar,
    * an unknown option or `trackers` without `pinning`; an Error for an avatar of another tracker.
    */
-  constructor(renderer: WebGLRenderer, options: BodyTrackerOptions<Shown>) {
+  constructor(renderer: XrRenderer, options: BodyTrackerOptions<Shown>) {
     super();
+    assertRenderer(renderer);
     assertOptions('BodyTracker', options, trackerOptions);
     const { avatar, modelUrl, deviceBody = false, pointing, trackers, ...bodyOptions } = options;
-    assertRenderer(renderer);
     if (avatar !== null) assertAvatar(avatar);
     assertPinning(trackers, bodyOptions.pinning);
     this.#avatar = avatar;
@@ -328,15 +334,17 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
 
   /** Starts tracking when the renderer has another session, and ends that of the previous one. */
   #followSession(): void {
-    const session = this.#renderer.xr.getSession();
+    const { xr } = this.#renderer;
+    const session = xr.getSession();
     if (session === this.#session) return;
+    if (session && !xr.enabled) warnOfXrDisabled(this.#renderer);
     this.#endTracking();
     this.#session = session;
     this.#tracking =
       session &&
       new TrackedSession({
         session,
-        drawing: this.#renderer.xr,
+        drawing: xr,
         bodyReader: this.deviceBody ? new DeviceBodyReader() : null,
         pointing: this.#pointing?.(session) ?? null,
         onStart: () => this.body.startSession(),

@@ -6,10 +6,24 @@ const warned = new WeakSet<object>();
  * Warns once for each object that is used after its `dispose`; it does not throw, because frames call it. `what`: the
  * name of the class, which minifiers change.
  */
-export function warnAfterDispose(object: object, what: string): void {
-  if (warned.has(object)) return;
-  warned.add(object);
-  console.warn(`threepoint: “update” has no effect after “dispose”. Stop calling it, or create another ${what}.`);
+export const warnAfterDispose = (object: object, what: string): void =>
+  warnOnce(object, `“update” has no effect after “dispose”. Stop calling it, or create another ${what}.`);
+
+/** Warns once for each renderer that does not draw in the session it has. */
+export const warnOfXrDisabled = (renderer: object): void =>
+  warnOnce(renderer, 'the renderer has a session and does not draw in it. Set renderer.xr.enabled = true.');
+
+/** Warns once that a page's policy lets no worker check files of avatars. */
+export const warnOfThreadCheck = (): void =>
+  warnOnce(
+    warned,
+    'no worker starts to check avatars of others, and frames wait for the check. Allow it: worker-src blob:.',
+  );
+
+function warnOnce(about: object, sentence: string): void {
+  if (warned.has(about)) return;
+  warned.add(about);
+  console.warn(`threepoint: ${sentence}`);
 }
 
 /**

@@ -93,6 +93,19 @@ describe('a body in a session of three.js', () => {
     ]);
   });
 
+  test('reports a tracker once that the calibration does not place', async () => {
+    const hips = { position: { x: 0, y: 0.9, z: 0 }, orientation: identity, tracking: 'tracked' as const };
+    const { headset, tracker, run } = await begin({
+      ...{ calibration: defaultCalibration, pinning },
+      trackers: () => ({ hips }),
+    });
+    const messages: string[] = [];
+    tracker.addEventListener('trackermismatch', ({ message }) => messages.push(message));
+    headset.putOn();
+    run(40);
+    expect(messages).toEqual(['The hips tracker is not used: the calibration has no trackerOffsets.hips.']);
+  });
+
   test('refuses trackers without the part that draws them, and offsets that no tracker is worn with', async () => {
     const trackers = () => null;
     await expect(begin({ trackers })).rejects.toThrow(/pinning.*threepoint\/trackers/);
@@ -292,7 +305,7 @@ describe('a body in a session of three.js', () => {
 describe('a tracker that is given the wrong things', () => {
   const create = (options: object) => () =>
     // reason: what a page without types may pass
-    new BodyTracker({} as WebGLRenderer, options as BodyTrackerOptions);
+    new BodyTracker({ xr: {} } as WebGLRenderer, options as BodyTrackerOptions);
 
   test('refuses an avatar that another tracker has or disposed of, which keeps its body', async () => {
     const { tracker, headset, run } = await begin({ calibration: defaultCalibration });
@@ -310,7 +323,7 @@ describe('a tracker that is given the wrong things', () => {
   test('leaves the avatar free where its own options are refused', async () => {
     const avatar = await loadAvatar(mannequin());
     expect(create({ avatar, calibration: { eyeHeight: 160, armSpan: 150 } })).toThrow(RangeError);
-    await new BodyTracker({} as WebGLRenderer, { avatar, estimator: 'ik' }).dispose();
+    await new BodyTracker({ xr: {} } as WebGLRenderer, { avatar, estimator: 'ik' }).dispose();
   });
 
   test.each([
@@ -337,15 +350,25 @@ describe('a tracker that is given the wrong things', () => {
   test.each([
     [
       'no options',
-      () => new BodyTracker({} as WebGLRenderer, undefined as never),
+      () => new BodyTracker({ xr: {} } as WebGLRenderer, undefined as never),
       /^BodyTracker needs .* Use avatar, /,
     ],
     ['no renderer', () => new BodyTracker(undefined as never, {} as never), /^renderer is missing\. Pass the one/],
+    [
+      'options in the place of the renderer',
+      () => new BodyTracker({} as never, undefined as never),
+      /^renderer is no renderer of three\.js: it has no “xr”\. Pass the one/,
+    ],
   ])('refuses %s', (_, call, sentence) => {
     expect(call).toThrow(sentence);
   });
 
   test('loads nothing without a source', async () => {
     await expect(loadAvatar(undefined as never)).rejects.toThrow(/^The avatar's source is missing\. Pass its address/);
+    await expect(loadAvatar(5 as never)).rejects.toThrow(/^The avatar's source is neither an address nor a file/);
+    const page = new TextEncoder().encode('\n<!doctype html><title>Not found</title>');
+    await expect(loadAvatar(page)).rejects.toThrow(
+      'the avatar: not a VRM or GLB file (a web page: is the address right?)',
+    );
   });
 });

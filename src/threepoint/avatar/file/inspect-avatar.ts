@@ -100,7 +100,11 @@ export function inspectAvatar(
   };
   limit('MB', bytes.length / 2 ** 20, limits.megabytes);
   const chunks = readGlbChunks(bytes);
-  if (!chunks) throw new Error(`${name}: not a VRM or GLB file (wrong signature, or truncated)`);
+  if (!chunks) {
+    const isPage = /^[\ufeff\s]*</.test(new TextDecoder().decode(bytes.subarray(0, 100)));
+    const why = isPage ? 'a web page: is the address right?' : 'wrong signature, or truncated';
+    throw new Error(`${name}: not a VRM or GLB file (${why})`);
+  }
   limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * maxJsonFraction);
   const description = parseDescription(chunks.json, name);
   if (description.meshes.length === 0) {

@@ -3,6 +3,7 @@ import { legProportions } from '../body/leg-proportions';
 import { type TrackerName, trackerNames } from '../body/tracker-offsets';
 import { distance } from '../math/vec3';
 import { recordOf } from '../records';
+import type { BodyTrackers } from '../tracking/tracking-frame';
 import type { TrackedJoints } from './tracked-joints';
 import type { TorsoPose } from './trunk/fit-torso';
 
@@ -10,10 +11,10 @@ import type { TorsoPose } from './trunk/fit-torso';
 const farApart = 0.05;
 const patience = 1;
 
-/** A tracker whose joint the body has not reached for a second. */
+/** A tracker whose joint the body has not reached for a second, or that has no offset. */
 export interface TrackerMismatch {
   readonly tracker: TrackerName;
-  /** The distance [m] out of reach. */
+  /** The distance [m] out of reach; 0: the calibration has no offset of this tracker, which is not used. */
   readonly far: number;
   /** A sentence for people that names the tracker, the distance, and what to do. */
   readonly message: string;
@@ -35,6 +36,9 @@ export class TrackerWatch {
   readonly #report: TrackerReport | undefined;
   /** The time [s] for which each joint has been out of reach. */
   readonly #seconds = recordOf(trackerNames, () => 0);
+  #offsets: Calibration['trackerOffsets'];
+  /** Whether each tracker was reported to have no offset. */
+  readonly #unplaced = recordOf(trackerNames, () => false);
   #legReach = 0;
 
   constructor(calibration: Calibration, report?: TrackerReport) {
@@ -43,10 +47,25 @@ export class TrackerWatch {
   }
 
   /** Sets the measures; what is still out of reach is reported once more. */
-  calibrate({ eyeHeight }: Calibration): void {
+  calibrate({ eyeHeight, trackerOffsets }: Calibration): void {
+    this.#offsets = trackerOffsets;
     // From the hips to the ankle of a straight leg that is held out to its side.
     this.#legReach = (legProportions.hip - legProportions.ankle + legProportions.aside) * eyeHeight;
-    for (const name of trackerNames) this.#seconds[name] = 0;
+    for (const name of trackerNames) {
+      this.#seconds[name] = 0;
+      this.#unplaced[name] = false;
+    }
+  }
+
+  /** Reports trackers without an offset, each once for each calibration. */
+  reportUnplaced(trackers: BodyTrackers): void {
+    for (let i = 0; i < trackerNames.length; i++) {
+      const name = trackerNames[i]!;
+      if (!trackers[name] || this.#offsets?.[name] || this.#unplaced[name]) continue;
+      this.#unplaced[name] = true;
+      const message = `The ${words[name][0]} tracker is not used: the calibration has no trackerOffsets.${name}.`;
+      this.#report?.({ tracker: name, far: 0, message });
+    }
   }
 
   /** Compares the joints by their trackers with the trunk that was drawn, floor frame. */
