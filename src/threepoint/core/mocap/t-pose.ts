@@ -24,7 +24,7 @@ import { armFault } from './rest-joints';
 import { asRightAngle, isTurnedBy, largestLean, majority, nearestRightAngle, sharedRest } from './right-angles';
 import { truthJoints } from './skeleton-map';
 
-/** The largest yaw and lean of a joint of the trunk against a right angle: heads look aside and down [rad]. */
+/** The largest yaw and lean of a head against a right angle: heads look aside and down [rad]. */
 const rightYaw = 0.6;
 const rightLean = 0.75;
 /** The largest angle of a hand, and of an arm whose elbow bends forward, against a right angle [rad]. */
@@ -100,8 +100,9 @@ class TPoseFinder {
     const yaw = largestYaw + sure * (clearYaw - largestYaw);
     if (this.shared && isTurnedBy(mean, this.shared, yaw, largestLean)) return this.shared;
     const { turn } = nearestRightAngle(mean);
-    const right = this.#snaps && isTurnedBy(mean, turn, rightYaw, rightLean) ? turn : null;
     const isHead = joint === this.body.joints.head;
+    const isNear = isHead ? isTurnedBy(mean, turn, rightYaw, rightLean) : asRightAngle(mean) !== null;
+    const right = this.#snaps && isNear ? turn : null;
     this.changed.add(isHead ? 'head' : 'trunk');
     if (isHead && !right) this.sureness = Math.min(this.sureness, sure);
     return right;
