@@ -11,7 +11,7 @@ import { type FileAxis, truthJoints } from './skeleton-map';
 /** The smallest bend of an elbow [sine] that defines the axis of its hinge. */
 const bentElbow = 0.35;
 /** The smallest cosine between a bone of a T-pose and the side. */
-const level = 0.95;
+export const level = 0.95;
 /** A joint that turns by less than this against its parent [rad] is not recorded: it rests. */
 const resting = 0.02;
 /** Joints turn by more than this against the body [rad] in a motion. */
@@ -46,11 +46,9 @@ export function spineOf({ parents }: ImportedMotion, joints: BodyJoints): readon
     for (let at = joint; at >= 0; at = parents[at]!) path.push(at);
     return path;
   }) as [number[], number[]];
-  const meeting = fromHead.find((joint) => fromHips.includes(joint));
-  return [...fromHips, ...fromHead].filter(
-    (joint, i, all) =>
-      (joint === meeting && all.indexOf(joint) === i) || !(fromHips.includes(joint) && fromHead.includes(joint)),
-  );
+  const meeting = fromHead.filter((joint) => fromHips.includes(joint)).slice(0, 1);
+  const apart = [...fromHips, ...fromHead].filter((joint) => fromHips.includes(joint) !== fromHead.includes(joint));
+  return [...meeting, ...apart];
 }
 
 /** Returns frames in which a body stands, in its own axes; where it never stands, its trunk counts as upright. */

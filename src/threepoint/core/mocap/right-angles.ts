@@ -4,7 +4,7 @@ import { axisNames, floorFromAxes } from './body-axes';
 import { meanRotation } from './observed-rotations';
 import { directions } from './read-skeleton-map';
 
-/** A rotation of a joint at rest deviates from a right angle by less than this [rad] where its file has right angles. */
+/** A rotation at rest deviates from a right angle by less than this [rad] where its file has right angles. */
 const nearRightAngle = 0.5;
 /** The largest yaw [rad] between a rest that faces along an axis of its file and the mean of its motion. */
 const facingAxis = 0.35;

@@ -17,10 +17,11 @@ import { type Side, sides } from '../math/side';
 import { parentsFirst } from '../math/tree';
 import { add, dot, down, normalise, right, scale, subtract, up, zero } from '../math/vec3';
 import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
-import { type BodyJoints, defaultFloor, standing, turnBetween, upAtRest } from './body-axes';
-import { armOf, bodyTree, ObservedBody, spineOf } from './observed-body';
+import { type BodyJoints, bodyFloor, defaultFloor, standing, turnBetween, upAtRest } from './body-axes';
+import { armOf, bodyTree, level, ObservedBody, spineOf } from './observed-body';
 import { meanRotation } from './observed-rotations';
-import { armFault } from './rest-joints';
+import { directions } from './read-skeleton-map';
+import { armFault, type RestJoints } from './rest-joints';
 import { asRightAngle, isTurnedBy, largestLean, majority, nearestRightAngle, sharedRest } from './right-angles';
 import { truthJoints } from './skeleton-map';
 
@@ -34,7 +35,7 @@ const rightArm = 0.65;
  * The largest turn about the vertical [rad] of a joint of the trunk against its rest: in a motion that shows its
  * T-pose, and in one that shows nothing, where joint limits alone count.
  */
-const clearYaw = 0.8;
+const clearYaw = 0.7;
 const largestYaw = 1.4;
 /** The largest mean bend of a hand against its forearm at rest, and the largest mean twist [rad]. */
 const largestBend = 1.05;
@@ -57,11 +58,37 @@ export interface TPose {
   readonly notes: readonly string[];
 }
 
+/** Returns the joints at rest, rotated, by their names. */
+const restTurned = ({ file, joints }: ObservedBody, turn: Quat): RestJoints =>
+  new Map(
+    truthJoints.flatMap((joint) =>
+      joints[joint] === undefined ? [] : [[joint, rotate(turn, file.rest[joints[joint]]!)]],
+    ),
+  );
+
+/** Returns the rotation to the floor of a rest in which a person stands; null: it is none. */
+function standingRest(body: ObservedBody): Quat | null {
+  const { file, joints } = body;
+  const above = upAtRest(file.rest, joints);
+  const turn = above && bodyFloor(file.rest, joints, directions[above]);
+  if (!turn) return null;
+  const { turn: right } = nearestRightAngle(turn);
+  const rest = restTurned(body, right);
+  const isAcross = (part: 'UpperArm' | 'UpperLeg'): boolean => {
+    const [left, other] = [rest.get(`left${part}`), rest.get(`right${part}`)];
+    return !left || !other || normalise(subtract(other, left), zero).x > level;
+  };
+  const stands = isAcross('UpperArm') && isAcross('UpperLeg') && sides.every((side) => armFault(rest, side) === null);
+  return stands ? right : null;
+}
+
 /** Finds how the joints of a body are rotated in T-pose, each against the floor frame. */
 class TPoseFinder {
   readonly notes: string[] = [];
   readonly #trunk: readonly number[];
-  /** The rotation that most joints of the trunk share. */
+  /** The rotation of a rest in which a person stands. */
+  readonly #standing: Quat | null;
+  /** That rotation, or the one that most joints of the trunk share. */
   readonly shared: Quat | null;
   /** Whether joints take the right angle that is next: the file has right angles, and no frame shows its T-pose. */
   readonly #snaps: boolean;
@@ -75,7 +102,8 @@ class TPoseFinder {
     const clavicles = sides.flatMap((side) => joints[`${side}Shoulder`] ?? []);
     this.#trunk = [...new Set([...spine, ...clavicles])];
     const means = this.#trunk.map((joint) => body.mean(joint));
-    this.shared = sharedRest(means.slice(0, spine.length));
+    this.#standing = standingRest(body);
+    this.shared = this.#standing ?? sharedRest(means.slice(0, spine.length));
     const right = means.filter((mean) => asRightAngle(mean) !== null);
     this.#snaps = !body.posed && (this.shared !== null || right.length > majority * means.length);
   }
@@ -98,9 +126,11 @@ class TPoseFinder {
   #restNear(joint: number, mean: Quat): Quat | null {
     const sure = this.body.sure(joint);
     const yaw = largestYaw + sure * (clearYaw - largestYaw);
-    if (this.shared && isTurnedBy(mean, this.shared, yaw, largestLean)) return this.shared;
-    const { turn } = nearestRightAngle(mean);
     const isHead = joint === this.body.joints.head;
+    // Where a person stands at rest, the places of the joints show how the trunk leans.
+    const lean = this.#standing && !isHead ? Math.PI : largestLean;
+    if (this.shared && isTurnedBy(mean, this.shared, yaw, lean)) return this.shared;
+    const { turn } = nearestRightAngle(mean);
     const isNear = isHead ? isTurnedBy(mean, turn, rightYaw, rightLean) : asRightAngle(mean) !== null;
     const right = this.#snaps && isNear ? turn : null;
     this.changed.add(isHead ? 'head' : 'trunk');
@@ -121,12 +151,10 @@ class TPoseFinder {
   /** Returns the rotations of an arm at rest where it is a T-pose’s; null: it is not. */
   #armAtRest(side: Side): Quat | null {
     const { shared } = this;
-    const { joints, file } = this.body;
+    const { joints } = this.body;
     if (!shared) return null;
     const [shoulder, elbow, hand] = armOf(joints, side);
-    const present = truthJoints.filter((joint) => joints[joint] !== undefined);
-    const rest = new Map(present.map((joint) => [joint, rotate(shared, file.rest[joints[joint]!]!)]));
-    if (armFault(rest, side)) return null;
+    if (armFault(restTurned(this.body, shared), side)) return null;
     const hinges = [shoulder, elbow].map((joint) => this.body.hinge(joint, [shoulder, elbow, hand]));
     if (!hinges[0] || !hinges[1]) return shared;
     const way = rotate(shared, this.body.bone(elbow, hand));
@@ -246,8 +274,8 @@ function axisNotes({ file, joints, above }: ObservedBody, shared: Quat | null, f
 
 /**
  * Finds the T-pose of a body in the frames of its motion: gravity gives its vertical, hips and shoulders its heading,
- * the elbows the twist of its arms, and the mean rotations of trunk, head and hands their axes. Joints whose rest agrees
- * with the frames, or rests at right angles to them, keep that exactly. A first frame in T-pose stands for all frames.
+ * the elbows the twist of its arms, and the mean rotations of trunk, head and hands their axes. Joints whose rest
+ * agrees with the frames, or is at right angles to them, keep that exactly. A first frame in T-pose stands for all.
  * Throws a sentence where left and right lie on each other.
  */
 export function findTPose(file: ImportedMotion, joints: BodyJoints): TPose {

@@ -20,11 +20,14 @@ function axisOfRoot(file: ImportedMotion, joints: BodyJoints, restUp: FileAxis):
   const poses = createSkeletonPose(file.names.length);
   const places: Vec3[] = [];
   const heights: number[] = [];
+  const lows: number[] = [];
   let standing = 0;
   for (const frame of sampledFrames(file.frameCount)) {
     file.pose(frame, poses);
     places.push({ ...poses.positions[joints.hips]! });
-    heights.push(dot(subtract(poses.positions[joints.hips]!, poses.positions[joints.leftFoot]!), above));
+    const [hips, foot] = [joints.hips, joints.leftFoot].map((joint) => dot(poses.positions[joint]!, above));
+    heights.push(hips! - foot!);
+    lows.push(foot!);
     if (dot(trunkDirection(poses.positions, joints), above) > 0.7) standing += 1;
   }
   if (standing < 0.5 * places.length) return null;
@@ -35,7 +38,8 @@ function axisOfRoot(file: ImportedMotion, joints: BodyJoints, restUp: FileAxis):
     const off = Math.abs(median(values) / height - 1);
     return off < nearHeight && quantile(values, 0.95) - quantile(values, 0.05) < 0.6 * height;
   };
-  if (keeps(restUp)) return null;
+  // Feet stand near the floor where their axis is the right one, also on stairs.
+  if (keeps(restUp) || Math.abs(quantile(lows, 0.1)) < 0.7 * height) return null;
   return axisNames.find((axis) => axis !== restUp && keeps(axis)) ?? null;
 }
 

@@ -161,6 +161,12 @@ describe('a BVH is read alike with', () => {
     }
   });
 
+  test('a person on a step whose hips stand as far aside as above the feet', () => {
+    const { clips, notes } = prepare(madeBvh({ rootPlace: [95, 130, 0] }));
+    expect(notes).toEqual([]);
+    expect(clips[0]!.truth[1]).toBeCloseTo(expected.truth[1]!, 1);
+  });
+
   test('left and right exchanged in its names, which is said', () => {
     const swapped = madeBvh({
       nameOf: (name) => name.replace(/Left|Right/, (word) => (word === 'Left' ? 'Right' : 'Left')),
