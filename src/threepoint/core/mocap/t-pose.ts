@@ -127,7 +127,7 @@ class TPoseFinder {
     const sure = this.body.sure(joint);
     const yaw = largestYaw + sure * (clearYaw - largestYaw);
     const isHead = joint === this.body.joints.head;
-    // Where a person stands at rest, the places of the joints show how the trunk leans.
+    // The places of the joints of a standing rest show how the trunk leans.
     const lean = this.#standing && !isHead ? Math.PI : largestLean;
     if (this.shared && isTurnedBy(mean, this.shared, yaw, lean)) return this.shared;
     const { turn } = nearestRightAngle(mean);
