@@ -55,6 +55,14 @@ const programs = {
     },
     argumentsOf: ({ rest: [file], ...given }) => [JSON.stringify({ ...given, file })],
   },
+  /** Reads every file of motion of a folder, and prints what was read and assumed, a line each (docs/motion.md). */
+  'motion:try': {
+    program: 'scripts/motion/try-files.ts',
+    usage: 'npm run tool -- motion:try DIR',
+    options: { rest: 'paths' },
+    check: oneArgument('folder'),
+    argumentsOf: ({ rest }) => rest,
+  },
   /** Runs the tests that report figures of docs/reliability.json, and writes docs/reliability.md. */
   reliability: {
     program: 'scripts/reliability/main.ts',

@@ -157,3 +157,15 @@ test('a file that needs more memory than its process is refused; the next is rea
   );
   expect(await reader.read('clips', { name: 'wave.bvh', bytes: bytes(madeBvh({ frames: 40 })) })).toHaveLength(1);
 });
+
+test('npm run tool -- motion:try prints a line for every file of motion of a folder', () => {
+  const folder = directoryWith({ 'cut.bvh': 'HIERARCHY\nROOT Hips\n{', 'notes.txt': '', 'wave.bvh': madeBvh() });
+  const { status, stdout } = spawnSync(process.execPath, ['scripts/tool.mjs', 'motion:try', folder], {
+    encoding: 'utf8',
+  });
+  const [cut, wave, ...more] = stdout.trim().split('\n');
+  expect(cut).toMatch(/^REFUSED cut\.bvh: line \d/);
+  expect(wave).toBe('wave.bvh: 1.0 s at 59.9 Hz, eyes at 1.62 m, arm span 1.40 m');
+  expect(more).toEqual([]);
+  expect(status).toBe(0);
+});

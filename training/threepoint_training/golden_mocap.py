@@ -42,13 +42,18 @@ def _about(axis: int, angle: float) -> Any:
     return quaternion.from_axis_angle(np.eye(3)[axis], np.array(angle))
 
 
+def _turning(heading: float, **turned: Any) -> dict[str, Any]:
+    """A body with this heading whose joints are turned in its own axes."""
+    hips = _about(1, heading)
+    return {"Hips": hips} | {name: quaternion.multiply(hips, turn) for name, turn in turned.items()}
+
+
 def _leaping(folder: Path) -> str:
     """At 50 Hz, in centimetres, with a leap between two pieces."""
     times = np.arange(FRAMES) / 50
 
     turns = [
-        {"Hips": _about(1, 2 + 0.6 * t), "LeftArm": _about(2, -0.9 * np.sin(3 * t)), "Head": _about(0, 0.2 + 0.3 * t)}
-        for t in times
+        _turning(2 + 0.6 * t, LeftArm=_about(2, -0.9 * np.sin(3 * t)), Head=_about(0, 0.2 + 0.3 * t)) for t in times
     ]
     hips = [np.array([20 * t + (300 if i >= FRAMES // 2 else 0), 100, 5 * t]) for i, t in enumerate(times)]
     text, _ = game_bvh({name: IDENTITY for name, *_ in GAME}, turns, hips)
@@ -58,8 +63,7 @@ def _leaping(folder: Path) -> str:
 
 def _moving(times: Any) -> list[dict[str, Any]]:
     return [
-        {"Hips": _about(1, 0.7 + 0.6 * t), "RightArm": _about(2, 0.9 * np.sin(3 * t)), "Head": _about(0, 0.2 - 0.3 * t)}
-        for t in times
+        _turning(0.7 + 0.6 * t, RightArm=_about(2, 0.9 * np.sin(3 * t)), Head=_about(0, 0.2 - 0.3 * t)) for t in times
     ]
 
 

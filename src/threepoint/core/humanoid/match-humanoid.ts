@@ -57,12 +57,23 @@ const limbWords = [
   'toes',
 ] as const satisfies readonly Part[];
 
+/** The sides of the limbs of a body by where they lie. */
+export interface LimbSides {
+  /** The sides of the first leg and of the first arm; null: not clear. */
+  readonly placed: readonly [Side | null, Side | null];
+  /** Whether feet show the front, so that places outweigh names. */
+  readonly frontShown: boolean;
+}
+
 class Matcher {
   readonly tree: JointTree;
   readonly map: Partial<Record<BoneName, BoneMatch>> = {};
   readonly notes: string[] = [];
 
-  constructor(joints: readonly SkeletonJoint[]) {
+  constructor(
+    joints: readonly SkeletonJoint[],
+    readonly sidesOf: ((body: Body) => LimbSides) | null,
+  ) {
     this.tree = new JointTree(joints);
   }
 
@@ -174,24 +185,16 @@ class Matcher {
   }
 
   /** Returns the sides of legs and arms, in the order of their limbs. */
-  #sides({ arms, legs, trunk }: Body): readonly [readonly Side[], readonly Side[]] {
-    const { tree } = this;
-    const pairs = [legs, arms];
-    const toLeft = this.#leftOf(trunk, arms, legs);
-    const found = pairs.map((pair) => {
-      if (!pair) return { named: null, placed: null };
-      const [one, other] = pair.limbs.map((limb) => sideByNames(tree, limb));
-      const named = one ?? (other ? otherSide(other!) : null);
-      const [a, b] = pair.limbs.map((limb) => this.#middle(limb));
-      const apart = toLeft ? dot(subtract(a!, b!), toLeft.axis) : 0;
-      const clear = Math.abs(apart) > 0.3 * distance(a!, b!) && distance(a!, b!) > 0.02 * tree.size;
-      const placed: Side | null = clear ? (apart > 0 ? 'left' : 'right') : null;
-      return { named, placed };
+  #sides(body: Body): readonly [readonly Side[], readonly Side[]] {
+    const { placed, frontShown } = this.sidesOf?.(body) ?? this.#sidesAtRest(body);
+    const found = [body.legs, body.arms].map((pair, i) => {
+      const [one, other] = pair?.limbs.map((limb) => sideByNames(this.tree, limb)) ?? [];
+      return { named: one ?? (other ? otherSide(other) : null), placed: placed[i]! };
     });
     const against = found.map(({ named, placed }) => named !== null && placed !== null && named !== placed);
-    const disagree = against[0] !== against[1] && legs !== null && found.every(({ named, placed }) => named && placed);
-    // Toes show the front; without them a file that is consistent keeps its names.
-    const byPlace = against.some(Boolean) && (toLeft?.byToes === true || disagree);
+    const disagree = against[0] !== against[1] && found.every(({ named, placed }) => named && placed);
+    // Without a front a file that is consistent keeps its names.
+    const byPlace = against.some(Boolean) && (frontShown || disagree);
     if (byPlace) {
       const which = disagree ? (against[0] ? 'legs' : 'arms') : 'both arms and legs';
       this.notes.push(
@@ -202,6 +205,20 @@ class Matcher {
       const first = (byPlace ? (placed ?? named) : (named ?? placed)) ?? 'left';
       return [first, otherSide(first)];
     }) as unknown as readonly [readonly Side[], readonly Side[]];
+  }
+
+  /** Returns the sides of the limbs of a skeleton by where they lie at rest. */
+  #sidesAtRest({ arms, legs, trunk }: Body): LimbSides {
+    const { tree } = this;
+    const toLeft = this.#leftOf(trunk, arms, legs);
+    const [leg, arm] = [legs, arms].map((pair): Side | null => {
+      if (!pair || !toLeft) return null;
+      const [a, b] = pair.limbs.map((limb) => this.#middle(limb)) as [Vec3, Vec3];
+      const apart = dot(subtract(a, b), toLeft.axis);
+      const clear = Math.abs(apart) > 0.3 * distance(a, b) && distance(a, b) > 0.02 * tree.size;
+      return clear ? (apart > 0 ? 'left' : 'right') : null;
+    }) as [Side | null, Side | null];
+    return { placed: [leg, arm], frontShown: toLeft?.byToes === true };
   }
 
   #middle({ chain, at }: Limb): Vec3 {
@@ -325,7 +342,7 @@ function spread(spines: readonly number[]): readonly (number | undefined)[] {
 
 /**
  * Finds the humanoid in a skeleton at rest. The tree, its lengths and its symmetry decide; names are evidence. A rest
- * pose that is folded does no harm.
+ * pose that is folded does no harm. `sidesOf`: where the limbs lie, if the pose of the joints does not show it.
  *
  * @example
  * const match = matchHumanoid(joints);
@@ -333,7 +350,10 @@ function spread(spines: readonly number[]): readonly (number | undefined)[] {
  * if (problem) throw new Error(problem);
  * const hips = joints[match.map.hips!.joint];
  */
-export const matchHumanoid = (joints: readonly SkeletonJoint[]): HumanoidMatch => new Matcher(joints).match();
+export const matchHumanoid = (
+  joints: readonly SkeletonJoint[],
+  sidesOf: ((body: Body) => LimbSides) | null = null,
+): HumanoidMatch => new Matcher(joints, sidesOf).match();
 
 /** Returns why a skeleton is refused, as a sentence with what was found and what is missing; null: it is taken. */
 export function humanoidProblem({ missing, confidence, found }: HumanoidMatch): string | null {

@@ -1,34 +1,27 @@
 import { type BoneMap, type BoneName, neededBones } from '../humanoid/bones';
 import { type BoneMatch, type HumanoidMatch, humanoidProblem, matchHumanoid } from '../humanoid/match-humanoid';
 import { type FileBones, fileBones, UnknownBonesError } from '../humanoid/unknown-bones-error';
-import { rotate } from '../math/quat';
-import { sides } from '../math/side';
-import { dot, normalise, subtract, type Vec3, zero } from '../math/vec3';
-import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
-import {
-  axesOfTrunk,
-  axisIn,
-  type BodyAxes,
-  type BodyJoints,
-  defaultFloor,
-  facesBack,
-  floorOfMotion,
-  otherUp,
-  outward,
-  turnBetween,
-} from './body-axes';
+import { dot, subtract, type Vec3 } from '../math/vec3';
+import { createSkeletonPose, type ImportedMotion } from '../motion/imported-motion';
+import type { BodyJoints } from './body-axes';
 import { handsOfCmuconvert } from './cmuconvert';
 import { withRestPose } from './mapped-motion';
-import { limbFault } from './rest-joints';
+import { sidesInMotion } from './sides-in-motion';
 import { type MappedSkeleton, type TruthJoint, trackedJoints, truthJoints } from './skeleton-map';
-import { armOf, straightHands, straightRest } from './straight-rest';
-import { axisOfRoot, withTurnedRest } from './turned-rest';
+import { findTPose } from './t-pose';
+import { restAsMoved } from './turned-rest';
 
 /** The fraction of the trunk above which its only joint is a chest, and below which it is a spine. */
 const chestFraction = 0.42;
 
 /** The height of a neck as a fraction of the way from between the shoulders to the head joint. */
 const neckFraction = 0.25;
+
+/** Below this sureness of its T-pose a motion is doubted. */
+const leastSure = 0.5;
+
+const unsure = (sureness: number): string =>
+  `its T-pose is uncertain (${sureness.toFixed(2)} of 1): the motion hardly shows how head and hands rest`;
 
 /** A motion with the skeleton that was found in it. */
 export interface MatchedMotion {
@@ -39,6 +32,8 @@ export interface MatchedMotion {
   readonly bones: FileBones;
   /** What was assumed, a sentence each. */
   readonly notes: readonly string[];
+  /** What the frames do not show well, a sentence each. */
+  readonly doubts: readonly string[];
 }
 
 type Joints = Partial<Record<TruthJoint, number>>;
@@ -91,67 +86,28 @@ const bodyJoints = (match: Match): BodyJoints => ({
   ...(Object.fromEntries(Object.entries(match).map(([bone, { joint }]) => [bone, joint])) as Record<'hips', number>),
 });
 
-/** Returns whether the limbs at rest are those of a T-pose in axes in which the body stands. */
-function restsAsPerson(positions: readonly Vec3[], joints: BodyJoints, { turn }: BodyAxes): boolean {
-  const present = truthJoints.filter((joint) => joints[joint] !== undefined);
-  const rest = new Map(present.map((joint) => [joint, rotate(turn, positions[joints[joint]!]!)]));
-  return sides.every((side) => limbFault(rest, side) === null);
-}
-
-/** Returns the match with left and right exchanged. */
-function exchanged(match: Match): Match {
-  const other = (bone: string): string => bone.replace(/^(left|right)/, (side) => (side === 'left' ? 'right' : 'left'));
-  return Object.fromEntries(Object.entries(match).map(([bone, found]) => [other(bone), found]));
-}
-
-/** Returns the pose of the first frame where a person stands in T-pose there; null: there is none. */
-function firstFrame(file: ImportedMotion, joints: BodyJoints): SkeletonPose | null {
-  const pose = file.pose(0, createSkeletonPose(file.names.length));
-  const axes = axesOfTrunk(pose.positions, joints, true);
-  if (!axes || !restsAsPerson(pose.positions, joints, axes)) return null;
-  const level = sides.every((side) => {
-    const [shoulder, elbow, hand] = armOf(joints, side);
-    const out = outward(axes.turn, side);
-    const points = (from: number, to: number): boolean =>
-      dot(normalise(subtract(pose.positions[to]!, pose.positions[from]!), zero), out) > 0.95;
-    return points(shoulder, elbow) && points(elbow, hand);
-  });
-  return level ? pose : null;
-}
-
 /**
  * Finds the skeleton of a person in a motion: which joint is which, how the body rests, and which way is up. `map`: the
  * user's map of its bones, which decides which joint is which. Throws UnknownBonesError with what was found and what is
  * missing where there is no map.
  */
 export function matchSkeleton(file: ImportedMotion, map?: BoneMap): MatchedMotion {
-  const { match, notes } = map ? { match: mappedJoints(file, map), notes: [] } : matchSides(file);
-  const found = jointsOf(match, file);
-  const { joints } = found;
+  const { match, notes } = map ? { match: mappedJoints(file, map), notes: [] } : matchNames(file);
   const body = bodyJoints(match);
-  const upright = restAsMoved(file, body);
-  const rested = restOf(upright.file, body);
-  const hands = straightHands(rested.file, body);
-  const based = hands ? withRestPose(rested.file, hands.pose) : rested.file;
-  notes.push(...found.notes, ...upright.notes, ...rested.notes, ...(hands?.notes ?? []));
-  const { turn } = rested.axes;
-  const floor = rested.stands ? turn : defaultFloor;
-  const up = otherUp(based, floor, body);
-  if (up)
-    notes.push(
-      `the person would lie in most frames; the axis that makes them stand was taken as up (${axisIn(floor, up)})`,
-    );
+  const moved = restAsMoved(file, body);
+  const { pose, floor, sureness, notes: assumed } = findTPose(moved.file, body);
+  const based = withRestPose(moved.file, pose);
+  const { joints, between, notes: lacking } = jointsOf(match, based);
   return {
     file: based,
-    notes,
+    notes: [...notes, ...lacking, ...moved.notes, ...assumed],
+    doubts: sureness < leastSure ? [unsure(sureness)] : [],
     bones: fileBones(jointsToDraw(file), match),
     skeleton: {
       joints: Object.fromEntries(Object.entries(joints).map(([joint, at]) => [joint, file.names[at]!])),
       columns: joints,
       turning: trackedJoints.map((joint) => joints[joint]!),
-      between: found.between,
-      floor: turn,
-      motionFloor: floorOfMotion(floor, up),
+      ...{ between, floor },
     },
   };
 }
@@ -191,9 +147,10 @@ function mappedJoints({ names }: ImportedMotion, map: BoneMap): Match {
   return Object.fromEntries(matches);
 }
 
-/** Matches joints, left and right by where the toes point. Throws UnknownBonesError where they do not match. */
-function matchSides(file: ImportedMotion): { readonly match: Match; readonly notes: string[] } {
-  const found = matchHumanoid(jointsAt(file, file.rest));
+/** Matches joints, left and right by names and frames. Throws UnknownBonesError where they do not match. */
+function matchNames(file: ImportedMotion): { readonly match: Match; readonly notes: string[] } {
+  const { positions } = file.pose(0, createSkeletonPose(file.names.length));
+  const found = matchHumanoid(jointsAt(file, positions), (body) => sidesInMotion(file, body));
   const problem = humanoidProblem(found);
   if (problem)
     throw new UnknownBonesError(
@@ -204,41 +161,5 @@ function matchSides(file: ImportedMotion): { readonly match: Match; readonly not
     bone,
     { joint: file.names.indexOf(name), confidence: 1, reason: 'cmuconvert calls it so' },
   ]);
-  const match = { ...found.map, ...Object.fromEntries(hands) };
-  if (!facesBack(file, bodyJoints(match))) return { match, notes: [...found.notes] };
-  const note = 'the names of left and right are exchanged: the toes point back; the motion was followed';
-  return { match: exchanged(match), notes: [...found.notes, note] };
-}
-
-/**
- * Returns the motion with its rest turned to the axes in which its root moves: some programs turn the offsets alone.
- * The root then keeps the height of the hips along another axis than that along which the rest stands.
- */
-function restAsMoved(file: ImportedMotion, joints: BodyJoints) {
-  const axes = axesOfTrunk(file.rest, joints)?.axes;
-  const above = axes && axisOfRoot(file, joints, axes.above);
-  if (!axes || !above) return { file, notes: [] };
-  const note = `its rest stands along ${axes.above}, its root moves with ${above} up; the rest was turned to the motion`;
-  return { file: withTurnedRest(file, turnBetween(axes.above, above)), notes: [note] };
-}
-
-/** Returns the motion relative to a rest in which a person stands. */
-function restOf(file: ImportedMotion, joints: BodyJoints) {
-  const axes = axesOfTrunk(file.rest, joints);
-  const notes: string[] = [];
-  if (axes && restsAsPerson(file.rest, joints, axes)) {
-    if (axes.axes && (axes.axes.above !== '+y' || axes.axes.ahead !== '+z'))
-      notes.push(`it rests with ${axes.axes.above} up, facing ${axes.axes.ahead}`);
-    return { file, axes, notes, stands: true };
-  }
-  const first = firstFrame(file, joints);
-  if (first) {
-    const based = withRestPose(file, first);
-    notes.push('its bones at rest are no T-pose; the T-pose of its first frame was taken');
-    return { file: based, axes: axesOfTrunk(based.rest, joints, true)!, notes, stands: false };
-  }
-  if (!axes)
-    throw new Error('the rest pose is no T-pose: left and right lie on each other. Name a “restFrame” in a map');
-  const built = straightRest(file, joints, axes.turn);
-  return { file: withRestPose(file, built.pose), axes, notes: built.notes, stands: false };
+  return { match: { ...found.map, ...Object.fromEntries(hands) }, notes: [...found.notes] };
 }

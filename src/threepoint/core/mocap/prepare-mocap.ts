@@ -150,6 +150,7 @@ const withMap = (file: ImportedMotion, map: SkeletonMap): MatchedMotion => ({
   skeleton: mappedSkeleton(file.names, map, floorFromFile(map)),
   bones: { joints: jointsToDraw(file), matched: map.joints, confidence: {} },
   notes: [],
+  doubts: [],
 });
 
 const stemOf = (name: string): string => name.replace(/\.[^.]*$/, '');
@@ -179,7 +180,7 @@ function personOf(name: string): string {
 export function* readTruthMotion(source: MocapSource): Generator<number, ReadMocap> {
   try {
     const map = source.map && readNamedText(source.map, readSkeletonMap);
-    const { file, skeleton, bones, notes } = yield* scaleProgress(readFile(source, map), 0, 0.75);
+    const { file, skeleton, bones, notes, doubts } = yield* scaleProgress(readFile(source, map), 0, 0.75);
     const given = file.rateHz ?? map?.frameRate ?? source.rateHz;
     const { rate, notes: assumed } = given === undefined ? usualRate(source) : { rate: given, notes: [] };
     if (!(rate >= lowestRateHz && rate <= highestRateHz))
@@ -189,7 +190,7 @@ export function* readTruthMotion(source: MocapSource): Generator<number, ReadMoc
     const unit = unitOf(file, skeleton);
     const motion = yield* scaleProgress(toTruthMotion(file, rate, skeleton, unit.metres), 0.75, 1);
     const said = [...file.notes, ...assumed, ...notes, ...(unit.note ? [unit.note] : [])];
-    return { motion, bones, notes: said, doubts: doubtsOf(motion) };
+    return { motion, bones, notes: said, doubts: [...doubts, ...doubtsOf(motion)] };
   } catch (error) {
     throw faultIn(source.name, error);
   }

@@ -57,26 +57,25 @@ function shownVector({ x, y, z }: Vec3): string {
   return z > 0 ? 'backward' : 'forward';
 }
 
+/** Returns the unit direction from a joint at rest to another. */
+const wayAtRest = (rest: RestJoints, from: TruthJoint, to: TruthJoint): Vec3 =>
+  direction(subtract(rest.get(to)!, rest.get(from)!));
+
 /**
- * Returns why the limbs of a side are not those of a T-pose, as what they do and what they should; null: the arm is
- * straight and between level and hanging, and the leg points down.
+ * Returns why an arm is not that of a T-pose, as what it does and what it should; null: it is straight, and between
+ * level and hanging.
  */
-export function limbFault(
+export function armFault(
   rest: RestJoints,
   side: Side,
   nameOf: (joint: TruthJoint) => string = String,
 ): readonly [what: string, should: string] | null {
   const [shoulder, elbow, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
-  const [hip, foot] = [`${side}UpperLeg`, `${side}Foot`] as const;
-  const way = (from: TruthJoint, to: TruthJoint): Vec3 => direction(subtract(rest.get(to)!, rest.get(from)!));
-  const points = (limb: string, from: TruthJoint, to: TruthJoint): string =>
-    `the ${side} ${limb}, ${nameOf(from)} to ${nameOf(to)}, points ${shownVector(way(from, to))}`;
-  const arm = way(shoulder, hand);
-  if (dot(arm, up) > 0.5 || sideSign(side) * arm.x < -0.3) return [points('arm', shoulder, hand), 'sideways'];
-  if (dot(way(shoulder, elbow), way(elbow, hand)) < 0)
-    return [`the ${side} arm is folded at ${nameOf(elbow)}`, 'straight'];
-  const stands = !rest.has(hip) || !rest.has(foot) || dot(way(hip, foot), down) > 0.7;
-  return stands ? null : [points('leg', hip, foot), 'down'];
+  const arm = wayAtRest(rest, shoulder, hand);
+  if (dot(arm, up) > 0.5 || sideSign(side) * arm.x < -0.3)
+    return [`the ${side} arm, ${nameOf(shoulder)} to ${nameOf(hand)}, points ${shownVector(arm)}`, 'sideways'];
+  const folded = dot(wayAtRest(rest, shoulder, elbow), wayAtRest(rest, elbow, hand)) < 0;
+  return folded ? [`the ${side} arm is folded at ${nameOf(elbow)}`, 'straight'] : null;
 }
 
 /**
@@ -109,7 +108,12 @@ export function checkRest(rest: RestJoints, { joints: names }: Pick<MappedSkelet
     const [shoulder, elbow, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
     bone(shoulder, elbow, `the ${side} arm`);
     bone(elbow, hand, `the ${side} arm`);
-    const fault = limbFault(rest, side, nameOf);
+    const fault = armFault(rest, side, nameOf);
     if (fault) refuse(...fault);
+    const [hip, foot] = [`${side}UpperLeg`, `${side}Foot`] as const;
+    if (!rest.has(hip) || !rest.has(foot)) continue;
+    const leg = wayAtRest(rest, hip, foot);
+    if (dot(leg, down) <= 0.7)
+      refuse(`the ${side} leg, ${nameOf(hip)} to ${nameOf(foot)}, points ${shownVector(leg)}`, 'down');
   }
 }

@@ -82,10 +82,8 @@ export interface MappedSkeleton {
   readonly between: Readonly<Partial<Record<'neck' | 'chest' | 'spine', BetweenJoints>>>;
   /** Metres per unit; absent: the unit that makes the arms a person's. */
   readonly scale?: number;
-  /** The rotation from the file's axes to the floor frame, of the rest pose. */
+  /** The rotation from the file's axes to the floor frame. */
   readonly floor: Quat;
-  /** This rotation for the motion. It differs where a program turned the root alone. */
-  readonly motionFloor: Quat;
 }
 
 /** Returns the skeleton that a map describes; all its joints are in the file. */
@@ -93,7 +91,7 @@ export function mappedSkeleton(names: readonly string[], map: SkeletonMap, floor
   const { joints, rotations, scale } = map;
   const columns = Object.fromEntries(Object.entries(joints).map(([joint, theirs]) => [joint, names.indexOf(theirs)]));
   return {
-    ...{ joints, columns, floor, motionFloor: floor },
+    ...{ joints, columns, floor },
     ...(scale !== undefined && { scale }),
     turning: trackedJoints.map((joint) => names.indexOf(rotations?.[joint] ?? joints[joint]!)),
     between: joints.spine === undefined ? { spine: { near: ['hips'], far: ['chest'], fraction: 0.5 } } : {},

@@ -192,7 +192,7 @@ export function* toTruthMotion(
   skeleton: MappedSkeleton,
   unit: number,
 ): Generator<number, TruthMotion> {
-  const { columns, between, floor, motionFloor } = skeleton;
+  const { columns, between, floor } = skeleton;
   const restFromFloor = conjugate(floor);
   const rest = restInMetres(file, skeleton, unit);
   for (const [joint, place] of rest) checkPlace(skeleton, joint, place, 'the rest pose');
@@ -220,7 +220,7 @@ export function* toTruthMotion(
     file.pose(frame, poses);
     for (const joint of present) {
       const place = places.get(joint)!;
-      scale(rotate(motionFloor, poses.positions[columns[joint]!]!, place), unit, place);
+      scale(rotate(floor, poses.positions[columns[joint]!]!, place), unit, place);
     }
     for (const joint of lacking) {
       const place = places.get(joint)!;
@@ -229,7 +229,7 @@ export function* toTruthMotion(
       else {
         rotate(poses.rotations[carried.joint]!, carried.offset, place);
         add(poses.positions[carried.joint]!, place, place);
-        scale(rotate(motionFloor, place, place), unit, place);
+        scale(rotate(floor, place, place), unit, place);
       }
     }
     for (const [i, joint] of truthJoints.entries()) {
@@ -238,7 +238,7 @@ export function* toTruthMotion(
       writeVec3(places.get(joint)!, positions, frame * positionsWidth + 3 * i);
     }
     for (const [i, joint] of trackedJoints.entries()) {
-      multiply(multiply(motionFloor, poses.rotations[skeleton.turning[i]!]!, turn), restFromFloor, turn);
+      multiply(multiply(floor, poses.rotations[skeleton.turning[i]!]!, turn), restFromFloor, turn);
       const wrist = wrists[joint];
       if (wrist) multiply(turn, wrist, turn);
       writeQuat(turn, rotations, frame * rotationsWidth + 4 * i);

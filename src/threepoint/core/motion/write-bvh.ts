@@ -19,7 +19,7 @@ const locked = 1 - 5e-9;
  * Writes the angles [rad] about x, y, z of Ry·Rx·Rz. At gimbal lock (x is a quarter turn) only the sum or difference of
  * the others is defined: y takes all of it.
  */
-function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
+export function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
   const sine = 2 * (q.x * q.w - q.y * q.z);
   if (Math.abs(sine) < locked) return toEulerYxz(q, target);
   const y = Math.atan2(2 * (q.y * q.w - q.x * q.z), 1 - 2 * (q.y * q.y + q.z * q.z));

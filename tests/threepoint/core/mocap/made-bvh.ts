@@ -59,6 +59,20 @@ function anglesAt(name: string, time: number): readonly [number, number, number]
   return [0, 0, 0];
 }
 
+/** Angles about Z, X and Y [degrees] of a person who walks at 1.3 m/s, looks around and nods. */
+export function walkingAnglesAt(name: string, time: number): readonly [number, number, number] {
+  const sign = name.startsWith('Left') ? 1 : -1;
+  const swing = sign * Math.sin(2 * Math.PI * time);
+  const part = name.replace(/^(Left|Right)/, '');
+  const angles: Readonly<Record<string, readonly [number, number, number]>> = {
+    ...{ UpLeg: [0, -8 - 22 * swing, 0], Leg: [0, 25 + 20 * Math.cos(2 * Math.PI * time + sign), 0] },
+    ...{ Arm: [sign * -75, 0, sign * 18 * swing], ForeArm: [0, 0, sign * (-35 + 12 * swing)] },
+    ...{ Hand: [sign * 6 * swing, 0, 0], Spine1: [0, 3, 4 * Math.sin(2 * Math.PI * time)] },
+    Head: [0, 9 * Math.sin(5 * time), 12 * Math.sin(3 * time)],
+  };
+  return angles[part] ?? [0, 0, 0];
+}
+
 export interface MadeOptions {
   readonly nameOf?: (name: string) => string;
   /** Every joint has six channels; its positions are those of `positionOf`. */
@@ -79,6 +93,10 @@ export interface MadeOptions {
   readonly fromHead?: boolean;
   /** Angles about Z, X and Y of joints that move in another way [degrees]. */
   readonly anglesOf?: Readonly<Record<string, readonly [number, number, number]>>;
+  /** The angles of all other joints at a time [s]; absent: one arm hangs, the other waves. */
+  readonly anglesAt?: (name: string, time: number) => readonly [number, number, number];
+  /** The speed of the root along +Z [cm/s]. */
+  readonly speed?: number;
   /** The number of frames at 60 Hz (60). */
   readonly frames?: number;
 }
@@ -87,7 +105,14 @@ const plainNumber = (value: number): string => value.toFixed(4);
 
 /** A BVH of one person of 1.70 m who waves for a second, in the form that the options describe. */
 export function madeBvh(options: MadeOptions = {}): string {
-  const { nameOf = (name) => name, numberOf = plainNumber, unit = 1, without = [], frames: count = 60 } = options;
+  const {
+    nameOf = (name) => name,
+    numberOf = plainNumber,
+    unit = 1,
+    without = [],
+    frames: count = 60,
+    speed = 0,
+  } = options;
   const offsetOf = options.offsetOf ?? ((offset) => offset);
   const ofOptions = options.fromHead ? hungFromHead : options.cmuconvert ? cmuBones : bones;
   const kept = ofOptions.filter(([name]) => !without.includes(name));
@@ -116,10 +141,12 @@ export function madeBvh(options: MadeOptions = {}): string {
   const frames = Array.from({ length: count }, (_, frame) =>
     row(
       order.flatMap(([name, parent, offset]) => {
-        const [z, x, y] = options.anglesOf?.[name] ?? anglesAt(name, frame / 60);
+        const [z, x, y] = options.anglesOf?.[name] ?? (options.anglesAt ?? anglesAt)(name, frame / 60);
         const turned = parent === null && options.rootZUp === true;
         const root = turned ? [offset[0], -offset[2], offset[1]] : offset;
-        const place = parent === null ? (options.rootPlace ?? root) : options.positionOf?.(offset, name);
+        const [rootX, rootY, rootZ] = options.rootPlace ?? root;
+        const moved = [rootX!, rootY!, rootZ! + (speed * frame) / 60];
+        const place = parent === null ? moved : options.positionOf?.(offset, name);
         return [...lengths(place ?? []), z, turned ? x + 90 : x, y];
       }),
     ),
