@@ -78,3 +78,18 @@ describe.each(['mannequin', 'woman', 'man', 'stout', 'child'])('the %s', (name) 
     expect(distances.at(-1)).toBeLessThan(0.013);
   });
 });
+
+test('a mesh with an outline is drawn at a distance by both of its materials', async () => {
+  await MeshoptSimplifier.ready;
+  const avatar = await builtInBody('woman');
+  const [mesh] = skinnedMeshesOf(avatar.object);
+  const { geometry } = mesh!;
+  // Outlines of VRM's MToon are a second material over the whole mesh.
+  for (const material of [0, 1]) geometry.addGroup(0, geometry.index!.count, material);
+  await avatar.simplifyAtDistance(MeshoptSimplifier);
+  const far = drawnIndices(mesh!, 5).length;
+  expect(far).toBeGreaterThan(0);
+  const { start, count } = geometry.drawRange;
+  for (const group of geometry.groups)
+    expect(Math.min(group.start + group.count, start + count) - Math.max(group.start, start)).toBe(far);
+});

@@ -83,5 +83,7 @@ export function* appendDistantTriangles(
     distantEnds[part] = indices.length;
   }
   mesh.geometry.setIndex(indices);
+  // The outline of a toon material is a second group over all indices.
+  for (const group of mesh.geometry.groups) group.count = indices.length;
   return distantEnds;
 }
