@@ -22,8 +22,8 @@ const budgets: Readonly<Record<World, WorldCounts>> = {
   mirror: usual,
   archery: usual,
   ball3: usual,
-  ball8: { ...usual, triangles: 550_000 },
-  ball16: { ...usual, drawCalls: 200, triangles: 850_000 },
+  ball8: { ...usual, triangles: 450_000 },
+  ball16: { ...usual, drawCalls: 200, triangles: 750_000 },
 };
 
 /** Returns a sentence for each budget that is exceeded. */

@@ -19,6 +19,7 @@ import {
 import { createAvatarBetweenFrames, RemoteAvatars } from 'threepoint/three';
 import { ballRules } from 'threepoint-games/ball';
 import { BallView } from '../../src/page/ball/ball-view';
+import { simplifyAtDistance } from '../../src/page/people/match/simplify-at-distance';
 import type { Quality } from '../../src/page/scene/renderer';
 import type { Studio } from '../../src/page/studio/studio';
 import { RemotePlayers } from '../../src/rooms/client/remote-players';
@@ -60,7 +61,8 @@ export class Court {
     this.#view = new BallView({ quality, balls: 20, onCaption: () => undefined });
     studio.setSurroundings(this.#view.placed(floorFromArena));
     this.#others = new RemoteAvatars({
-      load: async () => createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm')),
+      load: async () =>
+        simplifyAtDistance(await createAvatarBetweenFrames(await parseAvatar(mannequin, 'mannequin.vrm'))),
       plain: defaultAvatar,
       mouthOf: () => 0,
       onRefused: () => undefined,

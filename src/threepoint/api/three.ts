@@ -13,6 +13,7 @@ export { palettes, skinColors } from '../avatar/palettes';
 export { RemoteAvatars } from '../avatar/remote-avatars';
 export { thirdPersonOnlyLayer } from '../avatar/rig/body-meshes';
 export { type ClothWeave, weaveCloth } from '../avatar/rig/cloth-weave';
+export type { MeshSimplifier } from '../avatar/rig/distant-triangles';
 export type { BoneMap } from '../core/humanoid/bones';
 export type { AvatarMotionOptions, AvatarSource, LoadAvatarOptions } from './avatar-source';
 export { avatarMotionWriter, loadAvatar, loadMannequin } from './avatar-source';

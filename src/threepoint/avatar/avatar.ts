@@ -25,6 +25,7 @@ import type { LoadedAvatar } from './load-avatar';
 import { ArmHelperJoints } from './rig/arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
 import type { ClothWeave } from './rig/cloth-weave';
+import type { MeshSimplifier } from './rig/distant-triangles';
 import { mergeFlatParts } from './rig/flat-parts';
 import { tieLooseParts } from './rig/loose-parts';
 import { type AvatarJoint, Rig } from './rig/rig';
@@ -70,6 +71,12 @@ export interface Avatar {
    * avatars stay unchanged.
    */
   setClothWeave(weave: ClothWeave | null): void;
+  /**
+   * Draws the body with fewer triangles in shadows, and for cameras more than 3.5 m from its hips, where the difference
+   * is less than a pixel of a headset. Works between frames. Call it before the first `setPose`: edges stay where the
+   * body bends. simplifier: the `MeshoptSimplifier` of meshoptimizer, once it is ready.
+   */
+  simplifyAtDistance(simplifier: MeshSimplifier): Promise<void>;
   /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
   setOpacity(opacity: number): void;
   /**
@@ -329,6 +336,10 @@ class VrmAvatar implements Avatar {
 
   setClothWeave(weave: ClothWeave | null): void {
     this.meshes.setClothWeave(weave);
+  }
+
+  simplifyAtDistance(simplifier: MeshSimplifier): Promise<void> {
+    return betweenFrames(this.meshes.simplifyAtDistance(simplifier));
   }
 
   setOpacity(opacity: number): void {

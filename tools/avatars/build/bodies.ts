@@ -1,4 +1,4 @@
-import type { Figure, MaterialLook } from './figure';
+import type { Figure, MaterialLook, Tint } from './figure';
 import { mannequin } from './mannequin';
 import { type PersonMeasures, personOf } from './people';
 
@@ -10,6 +10,12 @@ const linear = (hex: string): readonly [number, number, number] =>
   }) as unknown as readonly [number, number, number];
 
 const cloth = (hex: string): MaterialLook => ({ color: linear(hex), roughness: 0.85 });
+
+/** Returns the colour of nails: pinker than fair skin, and lighter than dark skin. */
+const nailsOn = (skin: string): Tint => {
+  const [r, g, b] = linear(skin);
+  return [0.45 * r + 0.4, 0.45 * g + 0.15, 0.45 * b + 0.14];
+};
 
 interface Colours {
   readonly skin: string;
@@ -34,7 +40,7 @@ function person(
   triangles = usualTriangles,
 ): Figure {
   return {
-    ...personOf(measures, { Brow: linear(hair), TopTrim: linear(trim), Shoes: linear(shoes) }),
+    ...personOf(measures, { Nail: nailsOn(skin), Brow: linear(hair), TopTrim: linear(trim), Shoes: linear(shoes) }),
     name,
     rest: 'Skin',
     box: [

@@ -23,8 +23,8 @@ export const labels = {
   Lips: { material: 'Skin', tint: [0.9, 0.56, 0.53] },
   MouthLine: { material: 'Skin', tint: [0.1, 0.035, 0.035] },
   Hair: { material: 'Hair' },
-  Nail: { material: 'Skin', tint: [1, 0.74, 0.72] },
-  /** Brows, trimmed edges and shoes have colours of a person. */
+  /** Nails, brows, trimmed edges and shoes have colours of a person. */
+  Nail: { material: 'Details' },
   Brow: { material: 'Details' },
   Top: { material: 'Top' },
   TopTrim: { material: 'Details' },

@@ -205,6 +205,7 @@ export function personOf(
   const isFull = measures.wears.top.full > 0.005;
   // Below the chin, which is lower on a larger head.
   const collar = (z: number) => 1.452 - 0.03 * (face.size - 1) - 0.12 * z;
+  const onNail = folded(nails(rig));
   const shapes = Object.entries(faceShapes(face, onSurface(body))).map(([name, shape]) => [
     name,
     name === 'aa' ? shape : besideHair(hair, shape),
@@ -219,13 +220,17 @@ export function personOf(
       ...browSeams(face),
       // No skin shows in the crease between a shoe and its sole.
       { label: 'Sole', value: (_: number, y: number) => y - 0.05 },
-      { label: 'Nail', value: folded(nails(rig)) },
+      { label: 'Nail', value: onNail },
       { label: 'Skin', value: (_: number, y: number, z: number) => collar(z) - y },
     ],
     finer(x, y, z) {
       // Edges grow most where a full sleeve is projected.
       if (isFull && Math.abs(Math.abs(x) - rig.armJoints.elbow) < 0.05) return 0.027;
-      if (Math.abs(x) > rig.armJoints.wrist + 0.06) return 0.017;
+      // The outline of a nail is round.
+      if (onNail(x, y, z) < 0.001) return 0.01;
+      // The thumb and its muscle are pressed against what the hand holds.
+      const beyondWrist = Math.abs(x) - rig.armJoints.wrist;
+      if (beyondWrist > 0.06) return beyondWrist < 0.1 ? 0.017 : 0.024;
       // Weights of the upper arm would spread along longer edges, and pull at a cuff.
       const ofSleeve = Math.abs(x) > rig.armJoints.elbow && Math.abs(x) < measures.wears.top.sleeve - trimWidth;
       if (ofSleeve) return 0.04;

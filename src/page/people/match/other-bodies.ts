@@ -7,6 +7,7 @@ import { RoomBodies } from 'threepoint-rooms/three';
 import { type ActivityContext, showsIdleMotion } from '../../activity/activity-context';
 import { decoders } from '../../scene/decoders';
 import type { Voices } from '../voices/voices';
+import { simplifyAtDistance } from './simplify-at-distance';
 
 export interface OtherBodiesOptions {
   readonly context: Pick<
@@ -64,11 +65,12 @@ export function createOtherBodies({ context, exchange, mannequin, play, voices }
     notify: (level, text) => notices.show(level, text),
     onRefused: (text) => notices.show('info', text),
     async loadBuiltIn(body) {
-      const loaded = await builtIn.load(body);
+      const loaded = await simplifyAtDistance(await builtIn.load(body));
       loaded.setClothWeave(context.quality === 'high' ? weaveCloth : null);
       return loaded;
     },
-    loadFile: (bytes) => loadUntrustedAvatar(bytes, 'the avatar', { check: checkInWorker, decoders }),
+    loadFile: async (bytes) =>
+      simplifyAtDistance(await loadUntrustedAvatar(bytes, 'the avatar', { check: checkInWorker, decoders })),
     plain: () => settings.plainOthers,
     idles: () => showsIdleMotion(context, context.inputSource),
     mouthOf: (seat) => voices.seats.mouthOf(seat),

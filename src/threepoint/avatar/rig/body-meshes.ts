@@ -1,6 +1,7 @@
 import type { VRM } from '@pixiv/three-vrm';
 import {
   Box3,
+  type Camera,
   Color,
   type Material,
   type Mesh,
@@ -15,9 +16,10 @@ import type { Steps } from '../between-frames';
 import { palettes, skinColors } from '../palettes';
 import { meshesOf } from '../scene-meshes';
 import type { ClothWeave } from './cloth-weave';
+import { appendDistantTriangles, type MeshSimplifier } from './distant-triangles';
 import { FlatPartsMaterial } from './flat-parts';
 import type { Rig } from './rig';
-import { type SkinPart, skinParts, sortByPart } from './skin-parts';
+import { type PartEnds, type SkinPart, skinParts, sortByPart } from './skin-parts';
 
 /** VRM's layer of third-person-only meshes, such as the user's head. */
 export const thirdPersonOnlyLayer = 10;
@@ -46,8 +48,8 @@ const coloredParts = (material: Material): (readonly [name: string, color: strin
 export interface AvatarMesh {
   readonly mesh: Mesh;
   readonly visibleTo: 'both' | 'others' | 'self';
-  /** The number of indices up to and including each part; a mesh without a skin is one part as a whole. */
-  readonly ends: Readonly<Record<SkinPart, number>>;
+  /** A mesh without a skin is one part as a whole. */
+  readonly ends: PartEnds;
 }
 
 /** Returns the meshes of a body, and sorts the indices of skinned ones by part; called once. */
@@ -97,7 +99,7 @@ export function* readMeshes(
 }
 
 /** Returns the index counts of a mesh that is one part as a whole. */
-function endsOfPart({ geometry }: Mesh, part: SkinPart | 'hips'): Readonly<Record<SkinPart, number>> {
+function endsOfPart({ geometry }: Mesh, part: SkinPart | 'hips'): PartEnds {
   const first = skinParts.indexOf(part === 'hips' ? 'trunk' : part);
   const count = geometry.index?.count ?? 0;
   return recordOf(skinParts, (_, index) => (index < first ? 0 : count));
@@ -130,6 +132,9 @@ function materialsOf(mesh: Mesh): Material[] {
   return Array.isArray(mesh.material) ? mesh.material : [mesh.material];
 }
 
+/** The distance of a camera from the hips from which a body is drawn with fewer triangles [m]. */
+const distantFrom = 3.5;
+
 /** The visible parts of a body: all, head and hands, or nothing before its first pose. */
 type VisibleParts = 'body' | 'hands' | 'nothing';
 
@@ -141,6 +146,8 @@ export class BodyMeshes {
   private readonly looks = new Map<Material, { readonly transparent: boolean; readonly opacity: number }>();
   /** The colours of the file's materials that a palette recolours. */
   private readonly ownColors: Readonly<Record<string, string>>;
+  /** The node of the hips, whose distance from a camera counts. */
+  private readonly hips: Object3D | undefined;
   private shown: VisibleParts = 'nothing';
   private upperBodyOnly = false;
   private firstPerson = false;
@@ -151,6 +158,7 @@ export class BodyMeshes {
     const own = new Map(meshes.flatMap(({ mesh }) => materialsOf(mesh).flatMap(coloredParts)));
     this.ownColors = colorsOf((material) => own.get(material) ?? '');
     this.top = topOf(this.meshes, bones.get('head')?.node);
+    this.hips = bones.get('hips')?.node;
     this.showParts();
     this.showLayers();
   }
@@ -193,6 +201,27 @@ export class BodyMeshes {
         if (material instanceof FlatPartsMaterial) material.setClothWeave(weave);
   }
 
+  /** Draws fewer triangles of skinned meshes in shadows and at a distance. */
+  *simplifyAtDistance(simplifier: MeshSimplifier): Steps<void> {
+    for (const { mesh, ends } of this.meshes) {
+      if (!(mesh instanceof SkinnedMesh)) continue;
+      const distantEnds = yield* appendDistantTriangles(mesh, ends, simplifier);
+      const { geometry } = mesh;
+      const drawNear = () => geometry.setDrawRange(0, ends[this.lastPart]);
+      const drawDistant = () => geometry.setDrawRange(ends.legs, distantEnds[this.lastPart] - ends.legs);
+      mesh.onBeforeShadow = drawDistant;
+      mesh.onBeforeRender = (_renderer, _scene, camera) => (this.isDistant(camera) ? drawDistant() : drawNear());
+    }
+  }
+
+  private isDistant({ matrixWorld: { elements: camera } }: Camera): boolean {
+    const body = this.hips?.matrixWorld.elements;
+    return (
+      body !== undefined &&
+      Math.hypot(camera[12] - body[12], camera[13] - body[13], camera[14] - body[14]) > distantFrom
+    );
+  }
+
   private recolour(colors: Readonly<Record<string, string>>): void {
     for (const { mesh } of this.meshes) {
       for (const material of materialsOf(mesh)) {
@@ -228,10 +257,14 @@ export class BodyMeshes {
     return look;
   }
 
+  /** The last of the parts that are drawn. */
+  private get lastPart(): SkinPart {
+    return this.shown === 'hands' ? 'head' : this.upperBodyOnly ? 'trunk' : 'legs';
+  }
+
   private showParts(): void {
-    const last: SkinPart = this.shown === 'hands' ? 'head' : this.upperBodyOnly ? 'trunk' : 'legs';
     for (const { mesh, ends } of this.meshes) {
-      const end = ends[last];
+      const end = ends[this.lastPart];
       mesh.visible = this.shown !== 'nothing' && end > 0;
       // Meshes without a skin may share their geometry, and are drawn as a whole.
       if (end > 0) mesh.geometry.setDrawRange(0, end);

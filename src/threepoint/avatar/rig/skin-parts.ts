@@ -5,6 +5,8 @@ import type { Steps } from '../between-frames';
 /** The parts of a skin, in the order of their triangles: a prefix of the parts can be drawn alone. */
 export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;
 export type SkinPart = (typeof skinParts)[number];
+/** The index count of a mesh up to and including each part. */
+export type PartEnds = Readonly<Record<SkinPart, number>>;
 
 /** The number of triangles that one step sorts. */
 const trianglesAStep = 1024;
@@ -17,7 +19,7 @@ export function* sortByPart(
   mesh: SkinnedMesh,
   partOfBone: (bone: Object3D) => SkinPart | 'hips',
   hipLine: number,
-): Steps<Record<SkinPart, number>> {
+): Steps<PartEnds> {
   const { geometry, skeleton } = mesh;
   const joints = geometry.getAttribute('skinIndex');
   const weights = geometry.getAttribute('skinWeight');
