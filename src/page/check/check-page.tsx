@@ -1,6 +1,6 @@
 import { render } from 'preact';
 import type { WebGLRenderer } from 'three';
-import { createPageClock, firstLine, type PageClock, reasonOf } from 'threepoint/core';
+import { createPageClock, firstLine, type PageClock, reasonOf, TrackingDegradation } from 'threepoint/core';
 import { BodyTracker } from 'threepoint/three';
 import { describeXrSupport } from 'threepoint/webxr';
 import { createEnterButton, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
@@ -91,7 +91,7 @@ async function start(): Promise<void> {
   const parts = regions();
   const { canvas, progress, result } = parts;
   const switches = readCheckSwitches(location.search);
-  const { pace, emulate } = switches;
+  const { pace, emulate, cameras } = switches;
   const quality = switches.quality ?? affordableQuality();
   const renderer = createRenderer(canvas, quality);
   const button = createEnterButton(parts.enter, () => void run());
@@ -107,6 +107,8 @@ async function start(): Promise<void> {
   const clock = createPageClock(() => performance.now());
   const worlds = await CheckWorlds.create({ renderer, quality, clock, mannequin, onProblem });
   const { tracker, timing } = await createTracker(renderer, clock, worlds, onProblem);
+  const degradation = new TrackingDegradation();
+  degradation.configure(cameras ? { cameraView: true } : null);
   const offer = (label: string) => show(label, remarks.join(' ') || null, true);
 
   async function run(): Promise<void> {
@@ -119,6 +121,7 @@ async function start(): Promise<void> {
       quality,
       worlds,
       tracker,
+      degradation,
       timing,
       emulated,
       pace,

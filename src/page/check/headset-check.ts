@@ -1,4 +1,5 @@
 import type { WebGLRenderer } from 'three';
+import type { TrackingDegradation } from 'threepoint/core';
 import type { BodyTracker } from 'threepoint/three';
 import type { TrackedSession } from 'threepoint/webxr';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
@@ -22,6 +23,7 @@ interface HeadsetCheckOptions {
   readonly worlds: CheckWorlds;
   /** Draws the body of the user; `timing` measures its work. */
   readonly tracker: BodyTracker;
+  readonly degradation: TrackingDegradation;
   readonly timing: FrameTiming;
   readonly emulated: boolean;
   /** The factor of all durations. */
@@ -86,7 +88,7 @@ export class HeadsetCheck {
   }
 
   #frame(xr: XRSession, timestampMs: number, frame: XRFrame): void {
-    const { worlds, renderer, tracker, timing } = this.#options;
+    const { worlds, renderer, tracker, degradation, timing } = this.#options;
     const startMs = performance.now();
     const { body } = tracker;
     const time = body.tick(timestampMs);
@@ -94,7 +96,8 @@ export class HeadsetCheck {
     this.#time = time;
     timing.setRate(this.#rateOf(xr).rateHz);
     timing.begin(time * 1000);
-    const tracked = tracker.read(frame, time);
+    const read = tracker.read(frame, time);
+    const tracked = read && degradation.apply(read);
     timing.mark('tracking');
     const pose = body.solve(tracked);
     timing.mark('kinematics');

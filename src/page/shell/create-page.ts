@@ -127,6 +127,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const parts: InputParts = { ...stageParts, pointers, source: new TrackingSource(stageParts, pointers, actor) };
   const controls = new Controls(parts);
   const isCovered = () => controls.isPointedAt || sides.some((side) => headset.tracking?.inputs.buttons[side].taken);
+  if (switches.cameras) parts.degradation.configure({ cameraView: true });
   const passthrough = new PassthroughHost(parts, isCovered);
   const frame = new PageFrame(parts, controls, passthrough);
   const kept = new OfflineCopy();

@@ -2,12 +2,19 @@ import { expect, test } from 'vitest';
 import { readCheckSwitches } from '../../../src/page/check/check-switches';
 
 test('an address without a query asks for a whole check in the headset', () => {
-  expect(readCheckSwitches('')).toEqual({ emulate: false, quality: null, pace: 1, complaints: [] });
+  expect(readCheckSwitches('')).toEqual({
+    emulate: false,
+    cameras: false,
+    quality: null,
+    pace: 1,
+    complaints: [],
+  });
 });
 
-test('emulator, quality and pace are read', () => {
-  expect(readCheckSwitches('?emulate&quality=low&pace=0.2')).toEqual({
+test('emulator, cameras, quality and pace are read', () => {
+  expect(readCheckSwitches('?emulate&cameras&quality=low&pace=0.2')).toEqual({
     emulate: true,
+    cameras: true,
     quality: 'low',
     pace: 0.2,
     complaints: [],

@@ -36,6 +36,8 @@ const open = <Schema extends v.GenericSchema>(schema: Schema) => v.nullish(schem
 /** What the address asks for. Listed in src/page/README.md. */
 const entries = {
   emulate: flag,
+  /** Whether hands outside of the view of a headset's cameras are lost. */
+  cameras: flag,
   actor: v.optional(onOff, 'on'),
   /** Whether the controls are open; null: as they were left. */
   panel: open(onOff),

@@ -7,6 +7,7 @@ describe('the address of the page', () => {
       complaints: [],
       switches: {
         emulate: false,
+        cameras: false,
         actor: true,
         panel: null,
         estimator: null,

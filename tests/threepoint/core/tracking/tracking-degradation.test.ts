@@ -1,6 +1,16 @@
 import fc from 'fast-check';
 import { lerpHandShape, TrackingDegradation, type TrackingFrame } from 'threepoint/core';
-import { angleBetween, distance, fromAxisAngle, multiply, type TrackedPose, vec3 } from 'threepoint/math';
+import {
+  add,
+  angleBetween,
+  distance,
+  fromAxisAngle,
+  multiply,
+  rotate,
+  type TrackedPose,
+  type Vec3,
+  vec3,
+} from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { closedHand, relaxedHand } from '../../../../src/threepoint/core/body/hand-shape';
 import { deviceBodySize } from '../../../../src/threepoint/core/tracking/device-body';
@@ -36,6 +46,38 @@ function followed(settings: DegradationSettings, seconds: number, rateHz = 72, o
 }
 
 const parts = ['head', 'leftHand', 'rightHand'] as const;
+
+describe('the view of a headset’s cameras', () => {
+  const gaze = fromAxisAngle(vec3(0, 1, 0), 2.1);
+  /** A frame of a head that looks straight ahead, with a hand at a place in its frame [m]. */
+  const withHand = (place: Vec3): TrackingFrame => {
+    const at = (position: Vec3): TrackedPose => ({ position, orientation: gaze, tracking: 'tracked' });
+    const head = at(vec3(1, 1.6, -2));
+    return { time: 3, head, leftHand: null, rightHand: at(add(head.position, rotate(gaze, place))) };
+  };
+  const seen = (place: Vec3): boolean => {
+    const tracking = new TrackingDegradation();
+    tracking.configure({ cameraView: true });
+    return tracking.apply(withHand(place)).rightHand !== null;
+  };
+
+  test.each([
+    ['before the chest', 0.2, -0.3, -0.4],
+    ['raised to the side', 0.5, 0.1, -0.2],
+  ])('has a hand %s', (_, x, y, z) => {
+    expect(seen(vec3(x, y, z))).toBe(true);
+  });
+
+  test.each([
+    ['beside the hip', 0.2, -0.85, 0],
+    ['above the head', 0.1, 0.5, 0],
+    ['behind the back', 0, -0.4, 0.3],
+    ['at the face', 0, -0.05, -0.06],
+    ['stretched out beyond its range', 0, -0.1, -0.8],
+  ])('lacks a hand %s', (_, x, y, z) => {
+    expect(seen(vec3(x, y, z))).toBe(false);
+  });
+});
 
 describe('an added latency', () => {
   test.each([0, 13, 100, 200])('by %i ms shows head and hands as they were then, at any frame rate', (latencyMs) => {
