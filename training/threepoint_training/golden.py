@@ -172,6 +172,7 @@ SITUATIONS: dict[str, tuple[Callable[[Array, Array, Body, np.random.Generator], 
     "hands as tracked": (lambda positions, *_: positions, 0.015, 0.015),
     "hands before the trunk": (_hands_before_the_trunk, 0.2, 0.015),
     "hands out of reach": (_hands_out_of_reach, 0.05, 0.015),
+    "shoulders far from their places": (lambda positions, *_: positions, 0.05, 0.05),
 }
 
 

@@ -302,7 +302,12 @@ export function placeShoulder(
 ): void {
   const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, clavicle.root);
   const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), clavicle.rest);
-  limitAngle(rotationBetween(rest, subtract(target, root, clavicle.wanted), swing), furthestSwing, swing);
+  const { wanted } = clavicle;
+  subtract(target, root, wanted);
+  // A target near the root, or behind it, has no side to swing to.
+  const alongRest = dot(wanted, rest) / dot(rest, rest);
+  addScaled(wanted, rest, Math.max(0, torsoLimits.shortestClavicle - alongRest), wanted);
+  limitAngle(rotationBetween(rest, wanted, swing), furthestSwing, swing);
   add(root, rotate(swing, rest, rest), shoulders[side]);
   multiply(swing, rotations.upperChest, clavicles[side]);
 }
