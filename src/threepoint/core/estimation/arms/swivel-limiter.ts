@@ -108,9 +108,16 @@ interface ClearRange {
   high: number;
 }
 
+/** The swivel angles that an elbow reaches in a frame: up to `furthest` from the nearest one, to both sides. */
+interface ReachedRange {
+  nearest: number;
+  furthest: number;
+}
+
 // Scratch of one call.
 const axes: SwivelAxes = { zero: vec3(0, 0, 0), quarter: vec3(0, 0, 0) };
 const clear: ClearRange = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
+const reached: ReachedRange = { nearest: 0.5, furthest: 0.5 };
 const carried = vec3(0, 0, 0);
 const fromHead = vec3(0, 0, 0);
 
@@ -160,34 +167,34 @@ export function limitSwivel(
   const defined = wantedPole.confidence * smoothstep(handAtShoulder * armLength, handAway * armLength, circle.span);
   const followed = inside ? toGo : toGo * smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds);
   const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * confidence) * Math.max(deltaSeconds, 0);
-  const angle = limitElbow(before, circle, context, kept, kept + followed);
+  findReachedRange(before, circle, context, reached);
+  const nearest = kept + wrapAngle(reached.nearest - kept);
+  const angle = nearest + clamp(kept + followed - nearest, -reached.furthest, reached.furthest);
   return poleAt(clamp(angle, kept - most, kept + most), axes, target);
 }
 
 /**
- * Returns the swivel angle nearest to `angle` at which the elbow has moved, relative to the head, no further than the
- * hand and `elbowSpeed` allow. Where the circle is further away, returns its nearest angle.
+ * Writes the swivel angles at which the elbow has moved, relative to the head, no further than the hand and
+ * `elbowSpeed` allow. Where the circle is further away, only its nearest angle is reached.
  */
-function limitElbow(
+function findReachedRange(
   { elbow, wrist }: SwivelState,
   { centre, radius }: ElbowCircle,
   context: SwivelContext,
-  kept: number,
-  angle: number,
-): number {
+  target: ReachedRange,
+): void {
   const { headJoint, deltaSeconds } = context;
   const handStep = distance(subtract(context.wrist, headJoint, fromHead), wrist);
   const most = handStep + elbowSpeed * Math.max(deltaSeconds, 0);
   subtract(add(headJoint, elbow, fromHead), centre, fromHead);
   const ahead = dot(fromHead, axes.zero);
   const aside = dot(fromHead, axes.quarter);
-  const across = Math.hypot(ahead, aside);
+  const across = Math.sqrt(ahead * ahead + aside * aside);
   // The squared distance to the elbow's former place grows from that of the nearest angle on.
-  const nearest = dot(fromHead, fromHead) - across * across + (across - radius) ** 2;
-  const cosine = 1 - (most * most - nearest) / Math.max(2 * radius * across, 1e-9);
-  const widest = Math.acos(clamp(cosine, -1, 1));
-  const middle = kept + wrapAngle(Math.atan2(aside, ahead) - kept);
-  return middle + clamp(angle - middle, -widest, widest);
+  const least = dot(fromHead, fromHead) - across * across + (across - radius) ** 2;
+  const cosine = 1 - (most * most - least) / Math.max(2 * radius * across, 1e-9);
+  target.nearest = Math.atan2(aside, ahead);
+  target.furthest = Math.acos(clamp(cosine, -1, 1));
 }
 
 /** Returns the clear angle nearest to an angle in (−π, π]. */
