@@ -195,7 +195,10 @@ class DifferentiableKinematics:
         for number, side in enumerate(("left", "right")):
             swing = _limit("clavicleSwing", extremity[:, number])
             root = chest + lower @ self.rest["upperChest"] + upper @ self.rest[f"{side}Shoulder"]
-            shoulders.append(root + _swung(upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root, swing))
+            clavicle, wanted = upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root
+            along = (wanted * clavicle).sum(-1, keepdim=True) / clavicle.square().sum(-1, keepdim=True)
+            wanted = wanted + clavicle * (TORSO["shortestClavicle"] - along).clamp_min(0)
+            shoulders.append(root + _swung(clavicle, wanted, swing))
         return Trunk(hips, chest, neck, upper), torch.stack(shoulders, dim=1)
 
     def fit_arms(

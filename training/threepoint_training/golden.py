@@ -96,9 +96,9 @@ def feature_vectors() -> list[dict[str, Any]]:
         positions, rotations = _tracked(person.eye_height, person.arm_span, random)
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
-        metres = estimate_hand_tilts.travel(positions)
+        seconds = np.diff(times, prepend=times[:1])
         body = estimate_hand_tilts.with_estimated_hands(
-            person.body(), positions, rotations, metres, calibrated=person.calibrated(), seen=seen
+            person.body(), positions, rotations, seconds, calibrated=person.calibrated(), seen=seen
         )
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
@@ -172,6 +172,7 @@ SITUATIONS: dict[str, tuple[Callable[[Array, Array, Body, np.random.Generator], 
     "hands as tracked": (lambda positions, *_: positions, 0.015, 0.015),
     "hands before the trunk": (_hands_before_the_trunk, 0.2, 0.015),
     "hands out of reach": (_hands_out_of_reach, 0.05, 0.015),
+    "shoulders far from their places": (lambda positions, *_: positions, 0.05, 0.05),
 }
 
 

@@ -116,9 +116,8 @@ def clip_frames(
     """
     positions, rotations = tracked
     count, start = len(positions), corpus.clip_slice(clip).start
-    turned = estimate_hand_tilts.with_estimated_hands(
-        body, positions, rotations, estimate_hand_tilts.travel(positions), calibrated=calibrated
-    )
+    seconds = np.full(count, 1 / corpus.rate_hz)
+    turned = estimate_hand_tilts.with_estimated_hands(body, positions, rotations, seconds, calibrated=calibrated)
     vector, _ = frame_features(positions, rotations, turned)
     truth = corpus.truth(slice(start, start + count)).astype(np.float64)
     return HeldOut(

@@ -11,12 +11,17 @@ import { floorFromHeading } from '../tracking/heading';
 import { assertPinning, type TrackingFrame } from '../tracking/tracking-frame';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './arms/fit-arms';
 import { type CompletedFrame, completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
-import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './ik/solve-ik';
+import { type HandTurn, makeIkSolution, makeThreePoints, solveIk } from './ik/solve-ik';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
 import { makePaperOrientations, type PaperOrientations, paperOrientations } from './methods/paper-orientations';
-import { estimateHandTilts, makeHandTiltsState, resetHandTilts } from './online-calibration/estimate-hand-tilts';
+import {
+  calibrateHandTilts,
+  estimateHandTilt,
+  makeHandTiltsState,
+  resetHandTilts,
+} from './online-calibration/estimate-hand-tilts';
 import {
   estimateHeadsetRise,
   makeHeadsetRiseState,
@@ -108,6 +113,16 @@ export class Pipeline implements PoseEstimator {
   readonly #headset: HeadsetMountCorrection;
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
+  /** The time since the previous frame [s]. */
+  #deltaSeconds = 0;
+  /** The turn of a hand by its tilt; a hand that is not seen keeps the last one. */
+  readonly #turnHand: HandTurn = (side, untiltedForearm) => {
+    const { hands, tilts } = this.state;
+    const { source } = side === 'left' ? hands.frame.leftHand : hands.frame.rightHand;
+    return source === 'tracked'
+      ? estimateHandTilt(tilts, side, untiltedForearm, this.#deltaSeconds)
+      : tilts.turns[side];
+  };
   readonly #frameByFrame: boolean;
   /** The body by section 3.5 of the paper, frame by frame; null: by torso and arm fitting. */
   readonly #orientations: PaperOrientations | null;
@@ -140,15 +155,16 @@ export class Pipeline implements PoseEstimator {
     this.#headset.calibrate(calibration);
     this.#pins?.calibrate(calibration);
     this.#body = measure(calibration);
-    resetHandTilts(this.state.tilts, calibration.handTilts);
+    calibrateHandTilts(this.state.tilts, calibration.handTilts);
     resetHeadsetRise(this.state.headset);
     this.source.calibrate(this.#body.chestSpace);
   }
 
   reset(): void {
-    const { hands, trackers, limited, torso, arms } = this.state;
+    const { hands, trackers, tilts, limited, torso, arms } = this.state;
     resetCompleteHands(hands);
     resetSteadyTrackers(trackers);
+    resetHandTilts(tilts);
     this.source.reset();
     resetLimitJoints(limited);
     resetFitTorso(torso);
@@ -172,8 +188,8 @@ export class Pipeline implements PoseEstimator {
     const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
     const step = this.#frameByFrame ? Number.POSITIVE_INFINITY : deltaSeconds;
     steadyTrackers(state.trackers, completed, step);
+    this.#deltaSeconds = deltaSeconds;
     const solved = this.#solve(frame);
-    estimateHandTilts(state.tilts, solved.ik, completed, state.trackers.travel);
     // An underestimated arm length is indistinguishable from a raised headset.
     if (body.spanMeasured) estimateHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, step, state.joints);
@@ -220,7 +236,7 @@ export class Pipeline implements PoseEstimator {
 
   /** Stage 2 in the heading frame. */
   #solve({ time, deviceBody }: TrackingFrame): SolvedFrame {
-    const { solved, trackers, tilts } = this.state;
+    const { solved, trackers } = this.state;
     const { head, leftHand, rightHand } = trackers;
     solved.time = time;
     solved.deviceBody = deviceBody ?? null;
@@ -229,8 +245,7 @@ export class Pipeline implements PoseEstimator {
     transformPose(this.#headingFromFloor, head.value, solved.points.head);
     transformPose(this.#headingFromFloor, leftHand.value, solved.points.leftHand);
     transformPose(this.#headingFromFloor, rightHand.value, solved.points.rightHand);
-    turnHands(solved.points, tilts.turns);
-    solveIk(solved.points, tilts.turns, this.#body.chestSpace, solved.ik);
+    solveIk(solved.points, this.#turnHand, this.#body.chestSpace, solved.ik);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.left, this.#poles.left);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.right, this.#poles.right);
     return solved;

@@ -3,6 +3,7 @@ import { createEstimator, forwardKinematics, skeletonFromCalibration } from 'thr
 import {
   add,
   addScaled,
+  backward,
   cross,
   distance,
   fromAxisAngle,
@@ -20,8 +21,9 @@ import { swivelAngle } from '../../../../bench/evaluate/measures';
 import { mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, type Joints, poseOf } from './drawn';
-import { standing, wristOrientation } from './moving-person';
+import { standing, tracked, wristOrientation } from './moving-person';
 import { ahead, at, bentBy, bodyOf, calibration, degrees, elbowAside, hip } from './posed-body';
+import { openPlainModel } from './shipped-models';
 
 describe('arms', () => {
   test('the elbow points backward when the hand rests at the hip', () => {
@@ -57,6 +59,29 @@ describe('arms', () => {
     const high = bodyOf(standing(calibration, hip.left, vec3(0.25, 1.95, -0.1)));
     const lift = (joints: Joints) => at(joints, 'rightUpperArm').y - at(joints, 'rightShoulder').y;
     expect(lift(high)).toBeGreaterThan(lift(low) + 0.01);
+  });
+
+  test.each([
+    ['ik', null],
+    ['learned', openPlainModel()],
+  ] as const)('pronation moves the elbow outward and supination inward, alike on both sides: %s', (name, network) => {
+    for (const { x, y, z } of [vec3(0.2, 1.15, -0.38), vec3(0.5, 1.2, -0.2), vec3(0.2, 1.45, -0.4)]) {
+      const [supinated, thumbUp, pronated] = [-80, 0, 80].map((roll) => {
+        const hand = (sigma: number) => {
+          const orientation = wristOrientation(vec3(-0.15 * sigma, 0.1, -1), vec3(sigma, 0, 0));
+          const turned = multiply(orientation, fromAxisAngle(backward, sigma * roll * degrees));
+          return tracked(vec3(sigma * x, y, z), turned);
+        };
+        const estimator = createEstimator(name, calibration, network);
+        const frame = { ...standing(calibration, hip.left, hip.right), leftHand: hand(-1), rightHand: hand(1) };
+        const poses = Array.from({ length: 120 }, (_, i) => poseOf(estimator, { ...frame, time: i / 60 }));
+        const joints = forwardKinematics(skeletonFromCalibration(calibration), poses.at(-1)!.body!);
+        expect(at(joints, 'leftLowerArm').x).toBeCloseTo(-at(joints, 'rightLowerArm').x, 6);
+        return at(joints, 'rightLowerArm').x;
+      });
+      expect(pronated!).toBeGreaterThan(thumbUp! + 0.01);
+      expect(supinated!).toBeLessThan(thumbUp! - 0.01);
+    }
   });
 
   test('an elbow that was estimated inside the trunk comes out of it', () => {

@@ -17,7 +17,7 @@ import { describe, expect, test } from 'vitest';
 import { armBones } from '../../../../src/threepoint/core/estimation/arms/fit-arms';
 import type { CompletedFrame } from '../../../../src/threepoint/core/estimation/complete-hands';
 import { type JointPositions, mapJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
-import { evenly, seed } from '../arbitraries';
+import { evenly, seed, vector } from '../arbitraries';
 import { completedFrame, fitted, poseOf } from './drawn';
 import { standing, transformFrame } from './moving-person';
 
@@ -66,6 +66,28 @@ describe('hips under a chest that is too low for them to hang', () => {
         expect(Math.min(...hips.map(({ y }) => y))).toBeGreaterThan(0.08);
       }),
       { seed, numRuns: 40 },
+    );
+  });
+});
+
+describe('a shoulder that is estimated at the root of its clavicle', () => {
+  test('moves no faster than three times its estimate', () => {
+    const frame = standing(calibration, hip.left, hip.right);
+    const joints = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
+    const estimated = mapJoints((joint) => joints[joint].position);
+    fc.assert(
+      fc.property(vector(0.02), vector(0.02), (from, to) => {
+        const fitBody = fitted(calibration);
+        const shoulderAt = (share: number) => {
+          const rightUpperArm = add(joints.rightShoulder.position, lerp(from, to, share));
+          const drawn = fitBody(completedFrame(frame, calibration), { ...estimated, rightUpperArm }, 1);
+          return copyVec3(drawn.rightUpperArm.position);
+        };
+        const places = Array.from({ length: 41 }, (_, i) => shoulderAt(i / 40));
+        const longest = Math.max(...places.slice(1).map((place, i) => distance(place, places[i]!)));
+        expect(longest).toBeLessThan((3 * distance(from, to)) / 40 + 1e-6);
+      }),
+      { seed, numRuns: 50 },
     );
   });
 });

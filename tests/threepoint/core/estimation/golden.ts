@@ -2,12 +2,7 @@ import { readFileSync } from 'node:fs';
 import type { Calibration } from 'threepoint/core';
 import { makePose, type Pose, type Quat, transformPose, type Vec3 } from 'threepoint/math';
 import type { CompletedHand } from '../../../../src/threepoint/core/estimation/complete-hands';
-import {
-  type HandTurns,
-  makeThreePoints,
-  type ThreePoints,
-  turnHands,
-} from '../../../../src/threepoint/core/estimation/ik/solve-ik';
+import { makeThreePoints, type ThreePoints } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import type { SeenHands } from '../../../../src/threepoint/core/estimation/networks/frame-features';
 import { headingFromFloor } from '../../../../src/threepoint/core/tracking/heading';
 
@@ -113,13 +108,12 @@ export function goldenPoints({ positions, rotations, seen }: GoldenCase['frames'
   };
 }
 
-/** Returns the points as IK receives them, with the hands turned. */
-export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints, turns: HandTurns): ThreePoints {
+/** Returns the points as IK receives them. */
+export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints): ThreePoints {
   const points = makeThreePoints();
   const transform = headingFromFloor(head);
   transformPose(transform, head, points.head);
   transformPose(transform, leftHand, points.leftHand);
   transformPose(transform, rightHand, points.rightHand);
-  turnHands(points, turns);
   return points;
 }

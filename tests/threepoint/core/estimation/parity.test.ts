@@ -1,20 +1,20 @@
 import { averageSkeleton, chestSpaceBody, estimatedJoints } from 'threepoint/core';
-import { distance, type Side, sides, subtract, type Vec3 } from 'threepoint/math';
+import { sides } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { tiltRotation } from '../../../../src/threepoint/core/body/hand-tilt';
 import type { JointName } from '../../../../src/threepoint/core/body/joints';
-import { solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
+import { type HandTurn, solveIk } from '../../../../src/threepoint/core/estimation/ik/solve-ik';
 import { transformJoints } from '../../../../src/threepoint/core/estimation/joint-positions';
 import { paperFeatures } from '../../../../src/threepoint/core/estimation/methods/paper';
 import { chestFeatureCount, chestFeatures } from '../../../../src/threepoint/core/estimation/networks/chest-features';
 import { FeatureWindow } from '../../../../src/threepoint/core/estimation/networks/feature-window';
 import { featureCount, frameFeatures } from '../../../../src/threepoint/core/estimation/networks/frame-features';
 import {
-  estimateHandTilts,
+  estimateHandTilt,
   makeHandTiltsState,
 } from '../../../../src/threepoint/core/estimation/online-calibration/estimate-hand-tilts';
 import { floorFromHeading } from '../../../../src/threepoint/core/tracking/heading';
-import { type GoldenCase, goldenHand, goldenPoints, pointsInHeading, readGolden } from './golden';
+import { type GoldenCase, goldenPoints, pointsInHeading, readGolden } from './golden';
 
 const tolerance = 1e-5;
 const cases = readGolden<GoldenCase[]>('features.json');
@@ -47,7 +47,7 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
     for (const frame of golden.frames) {
       const points = goldenPoints(frame);
       const turns = turnsOf(frame);
-      const { joints } = solveIk(pointsInHeading(points, turns), turns, body);
+      const { joints } = solveIk(pointsInHeading(points), (side) => turns[side], body);
       transformJoints(floorFromHeading(points.head), joints, joints);
       estimatedJoints.forEach((joint, index) => {
         const { x, y, z } = joints[joint];
@@ -58,20 +58,15 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
 
   test('how hands stand to their forearms, observed frame by frame', () => {
     const state = makeHandTiltsState(golden.calibration.handTilts);
-    const fromHead: Partial<Record<Side, Vec3>> = {};
+    let before = Number.NaN;
     for (const frame of golden.frames) {
       const points = goldenPoints(frame);
+      const turnHand: HandTurn = (side, forearm) =>
+        points.seen[side] ? estimateHandTilt(state, side, forearm, frame.time - before) : state.turns[side];
+      solveIk(pointsInHeading(points), turnHand, body);
       const turns = turnsOf(frame);
       for (const side of sides) expect(state.turns[side]).toBeSameRotationAs(turns[side], 1e-4);
-      const solution = solveIk(pointsInHeading(points, state.turns), state.turns, body);
-      const hands = { leftHand: goldenHand(points.seen.left), rightHand: goldenHand(points.seen.right) };
-      const travel = { left: 0, right: 0 };
-      for (const side of sides) {
-        const now = subtract((side === 'left' ? points.leftHand : points.rightHand).position, points.head.position);
-        travel[side] = distance(now, fromHead[side] ?? now);
-        fromHead[side] = now;
-      }
-      estimateHandTilts(state, solution, hands, travel);
+      before = frame.time;
     }
   });
 
@@ -81,8 +76,8 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
     golden.frames.forEach((frame, index) => {
       const seen = goldenPoints(frame);
       const turns = turnsOf(frame);
-      const points = pointsInHeading(seen, turns);
-      const solution = solveIk(points, turns, body);
+      const points = pointsInHeading(seen);
+      const solution = solveIk(points, (side) => turns[side], body);
       const features = frameFeatures(points, seen.seen, solution.joints, body, window.push(frame.time));
       expect(features.length).toBe(featureCount);
       expectNear(features, frame.features, `frame ${index}`);

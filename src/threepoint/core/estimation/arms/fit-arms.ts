@@ -86,6 +86,8 @@ const makeArmState = (): ArmState => ({
   known: false,
   axis: vec3(0, 0, 0),
   pole: vec3(0, 0, 0),
+  elbow: vec3(0, 0, 0),
+  wrist: vec3(0, 0, 0),
   rotations: { upperArm: quat(0, 0, 0, 1), lowerArm: quat(0, 0, 0, 1), hand: quat(0, 0, 0, 1) },
   drawn: makeArmDirections(),
   transition: makeArmTransition(),
@@ -133,6 +135,8 @@ const estimated: Record<'shoulder' | 'elbow' | 'wrist', Vec3> = { shoulder: zero
 const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose | null } = {
   side: 'left',
   torso: null,
+  headJoint: zero,
+  wrist: zero,
   armLength: Number.NaN,
   confidence: Number.NaN,
   deltaSeconds: Number.NaN,
@@ -187,6 +191,8 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   turnBones(side, state, deltaSeconds);
   rotateInverse(floorFromChest, circle.axis, state.axis);
   rotateInverse(floorFromChest, pole, state.pole);
+  subtract(elbow, input.frame.headJoint, state.elbow);
+  subtract(wrist, input.frame.headJoint, state.wrist);
   state.known = true;
 }
 
@@ -213,6 +219,8 @@ function bendArm(
   estimatedPole(estimated, circle, ikPoles, wantedPole);
   swivelContext.side = side;
   swivelContext.torso = torso;
+  swivelContext.headJoint = frame.headJoint;
+  swivelContext.wrist = wrist;
   swivelContext.armLength = armLength;
   swivelContext.confidence = completed.confidence;
   swivelContext.deltaSeconds = deltaSeconds;

@@ -5,6 +5,7 @@ import { clamp, smoothingFactor, smoothstep } from '../../math/damper';
 import { fromAxes, type Quat, quat, rotate, rotateInverse, rotationBetween } from '../../math/quat';
 import type { Side } from '../../math/side';
 import {
+  add,
   addScaled,
   backward,
   cross,
@@ -31,6 +32,8 @@ const { trunkCapsule: capsule } = limits;
 const swivelSpeed = 12;
 /** The highest speed of the swivel [rad/s] of a guessed hand. */
 const guessedSwivelSpeed = 5;
+/** The highest speed of an elbow about the head [m/s] in addition to the hand's own motion. */
+const elbowSpeed = 2;
 /** The longest half-life [s] of the swivel angle, where its estimate is uncertain about the side of the elbow. */
 const swivelHalfLife = 0.35;
 /**
@@ -47,6 +50,9 @@ export interface SwivelState {
   readonly axis: MutableVec3;
   /** The direction of the elbow from that line, unit. */
   readonly pole: MutableVec3;
+  /** The elbow and the wrist from the head joint [m], floor axes. */
+  readonly elbow: MutableVec3;
+  readonly wrist: MutableVec3;
 }
 
 /** The direction of an estimated elbow from its own arm's line, and its confidence in [0, 1]. */
@@ -77,6 +83,9 @@ export function estimatedPole(
 export interface SwivelContext {
   readonly side: Side;
   readonly torso: TorsoPose;
+  /** The head joint and the wrist, floor frame. */
+  readonly headJoint: Vec3;
+  readonly wrist: Vec3;
   /** Upper arm and forearm together [m]. */
   readonly armLength: number;
   /** The confidence in the hand, in [0, 1]: elbows of guessed hands turn slower. */
@@ -99,10 +108,18 @@ interface ClearRange {
   high: number;
 }
 
+/** The swivel angles that an elbow reaches in a frame: up to `furthest` from the nearest one, to both sides. */
+interface ReachedRange {
+  nearest: number;
+  furthest: number;
+}
+
 // Scratch of one call.
 const axes: SwivelAxes = { zero: vec3(0, 0, 0), quarter: vec3(0, 0, 0) };
 const clear: ClearRange = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
+const reached: ReachedRange = { nearest: 0.5, furthest: 0.5 };
 const carried = vec3(0, 0, 0);
+const fromHead = vec3(0, 0, 0);
 
 /** Writes the axes for an arm along `axis`; for an arm along the chest's side axis, `zero` is backward. */
 function swivelAxes(side: Side, floorFromChest: Quat, axis: Vec3, { zero, quarter }: SwivelAxes): void {
@@ -129,9 +146,10 @@ export function limitSwivel(
   before: SwivelState | null,
   wantedPole: EstimatedPole,
   circle: ElbowCircle,
-  { side, torso, armLength, confidence, deltaSeconds }: SwivelContext,
+  context: SwivelContext,
   target: MutableVec3,
 ): MutableVec3 {
+  const { side, torso, armLength, confidence, deltaSeconds } = context;
   const { axis } = circle;
   const floorFromChest = torso.rotations.upperChest;
   swivelAxes(side, floorFromChest, axis, axes);
@@ -149,7 +167,34 @@ export function limitSwivel(
   const defined = wantedPole.confidence * smoothstep(handAtShoulder * armLength, handAway * armLength, circle.span);
   const followed = inside ? toGo : toGo * smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds);
   const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * confidence) * Math.max(deltaSeconds, 0);
-  return poleAt(kept + clamp(followed, -most, most), axes, target);
+  findReachedRange(before, circle, context, reached);
+  const nearest = kept + wrapAngle(reached.nearest - kept);
+  const angle = nearest + clamp(kept + followed - nearest, -reached.furthest, reached.furthest);
+  return poleAt(clamp(angle, kept - most, kept + most), axes, target);
+}
+
+/**
+ * Writes the swivel angles at which the elbow has moved, relative to the head, no further than the hand and
+ * `elbowSpeed` allow. Where the circle is further away, only its nearest angle is reached.
+ */
+function findReachedRange(
+  { elbow, wrist }: SwivelState,
+  { centre, radius }: ElbowCircle,
+  context: SwivelContext,
+  target: ReachedRange,
+): void {
+  const { headJoint, deltaSeconds } = context;
+  const handStep = distance(subtract(context.wrist, headJoint, fromHead), wrist);
+  const most = handStep + elbowSpeed * Math.max(deltaSeconds, 0);
+  subtract(add(headJoint, elbow, fromHead), centre, fromHead);
+  const ahead = dot(fromHead, axes.zero);
+  const aside = dot(fromHead, axes.quarter);
+  const across = Math.sqrt(ahead * ahead + aside * aside);
+  // The squared distance to the elbow's former place grows from that of the nearest angle on.
+  const least = dot(fromHead, fromHead) - across * across + (across - radius) ** 2;
+  const cosine = 1 - (most * most - least) / Math.max(2 * radius * across, 1e-9);
+  target.nearest = Math.atan2(aside, ahead);
+  target.furthest = Math.acos(clamp(cosine, -1, 1));
 }
 
 /** Returns the clear angle nearest to an angle in (−π, π]. */

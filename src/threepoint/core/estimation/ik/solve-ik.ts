@@ -32,8 +32,8 @@ import parameters from './ik-parameters.json' with { type: 'json' };
 /** Head and wrists in the heading frame. */
 export interface ThreePoints {
   readonly head: Pose<'heading'>;
-  readonly leftHand: Pose<'heading'>;
-  readonly rightHand: Pose<'heading'>;
+  readonly leftHand: MutablePose<'heading'>;
+  readonly rightHand: MutablePose<'heading'>;
 }
 
 export const makeThreePoints = (): { readonly [point in keyof ThreePoints]: MutablePose<'heading'> } => ({
@@ -42,14 +42,11 @@ export const makeThreePoints = (): { readonly [point in keyof ThreePoints]: Muta
   rightHand: makePose(),
 });
 
-/** The rotation of each hand in its own frame after which its −Z continues the forearm. */
-export type HandTurns = Readonly<Record<Side, Quat>>;
-
-/** Turns both hands so that their −Z continues the forearm. */
-export function turnHands({ leftHand, rightHand }: ReturnType<typeof makeThreePoints>, turns: HandTurns): void {
-  multiply(leftHand.orientation, turns.left, leftHand.orientation);
-  multiply(rightHand.orientation, turns.right, rightHand.orientation);
-}
+/**
+ * Returns the rotation of a hand in its own frame after which its −Z continues the forearm. `untiltedForearm`: the
+ * direction of the forearm, elbow to wrist, as estimated without the tilt of its hand; unit, frame of the tracked hand.
+ */
+export type HandTurn = (side: Side, untiltedForearm: Vec3) => Quat;
 
 /** The axes of the chest, unit: from the left to the right shoulder, up the spine, backward. */
 export interface ChestAxes {
@@ -68,18 +65,12 @@ export interface IkSolution {
   readonly chest: ChestAxes;
   /** The direction of each elbow from the line between shoulder and wrist, unit. */
   readonly poles: Readonly<Record<Side, MutableVec3>>;
-  /**
-   * The direction of each forearm, elbow to wrist, as estimated without the tilt of its hand; unit, frame of the
-   * tracked hand.
-   */
-  readonly untiltedForearms: Readonly<Record<Side, MutableVec3>>;
 }
 
 export const makeIkSolution = (): IkSolution => ({
   joints: makeJoints(),
   chest: makeChestAxes(),
   poles: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
-  untiltedForearms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });
 
 const { ik: bounds } = limits;
@@ -140,12 +131,12 @@ const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(
 
 /**
  * Solves the six joints from head and wrists (stage 2): spine bend, pelvis under the head, clavicles, and two-bone arms
- * with an anatomical swivel. The hands must be corrected by `turnHands`. The numbered steps are those of
+ * with an anatomical swivel. The hands of `points` are turned by `turnHand`. The numbered steps are those of
  * docs/estimation.md.
  */
 export function solveIk(
   points: ThreePoints,
-  turns: HandTurns,
+  turnHand: HandTurn,
   body: ChestSpaceBody,
   target: IkSolution = makeIkSolution(),
 ): IkSolution {
@@ -157,8 +148,8 @@ export function solveIk(
   turnChest();
   leanTrunk(points.head, body);
   placeTrunk(points.head, body, target.joints);
-  placeArm('left', points.leftHand, turns.left, body, target);
-  placeArm('right', points.rightHand, turns.right, body, target);
+  placeArm('left', points.leftHand, turnHand, body, target);
+  placeArm('right', points.rightHand, turnHand, body, target);
   chestAxesOf(target.joints, target.chest);
   return target;
 }
@@ -222,10 +213,10 @@ const inThorax = (v: Vec3, sigma: number, target: MutableVec3): MutableVec3 =>
 
 function placeArm(
   side: Side,
-  wrist: Pose<'heading'>,
-  turn: Quat,
+  wrist: MutablePose<'heading'>,
+  turnHand: HandTurn,
   body: ChestSpaceBody,
-  { joints, poles, untiltedForearms }: IkSolution,
+  { joints, poles }: IkSolution,
 ): void {
   const sigma = sideSign(side);
   const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
@@ -234,22 +225,23 @@ function placeArm(
   rotate(thorax, backward, fallbackPoles[1]);
   elbowCircle(shoulder, wrist.position, body.armBones, fallbackPoles[0], circle);
 
-  // 7. Elbow: the swivel follows where the hand is and how it is turned.
+  // 7. Elbow: the swivel follows where the hand is and how it is turned, first as it is tracked, then without its tilt.
   handFeatures[0] = 1;
   inThorax(subtract(wrist.position, shoulder, handAxis), sigma, handAxis);
   writeVec3(scale(handAxis, 1 / body.arm, handAxis), handFeatures, 1);
-  writeVec3(inThorax(rotate(wrist.orientation, up, handAxis), sigma, handAxis), handFeatures, 4);
-  writeVec3(inThorax(rotate(wrist.orientation, backward, handAxis), sigma, handAxis), handFeatures, 7);
-  placeElbow(parameters.pole, sigma, poles[side], side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
-
-  // Solves again for the tracked hand, whose axes are those of the turned hand, turned back.
-  rotate(wrist.orientation, rotateInverse(turn, up, handAxis), handAxis);
-  writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 4);
-  rotate(wrist.orientation, rotateInverse(turn, backward, handAxis), handAxis);
-  writeVec3(inThorax(handAxis, sigma, handAxis), handFeatures, 7);
+  writeHandAxes(wrist, sigma);
   placeElbow(parameters.untiltedPole, sigma, untiltedPole, untiltedElbow);
   normalise(subtract(wrist.position, untiltedElbow, untiltedForearm), circle.axis, untiltedForearm);
-  rotate(turn, rotateInverse(wrist.orientation, untiltedForearm, untiltedForearm), untiltedForearms[side]);
+  rotateInverse(wrist.orientation, untiltedForearm, untiltedForearm);
+  multiply(wrist.orientation, turnHand(side, untiltedForearm), wrist.orientation);
+  writeHandAxes(wrist, sigma);
+  placeElbow(parameters.pole, sigma, poles[side], side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
+}
+
+/** Writes the hand's +Y and +Z axes, thorax frame, mirrored for the left arm, as features. */
+function writeHandAxes({ orientation }: Pose<'heading'>, sigma: number): void {
+  writeVec3(inThorax(rotate(orientation, up, handAxis), sigma, handAxis), handFeatures, 4);
+  writeVec3(inThorax(rotate(orientation, backward, handAxis), sigma, handAxis), handFeatures, 7);
 }
 
 /** Writes the elbow on its circle, and its pole, by these weights of the hand's features. */

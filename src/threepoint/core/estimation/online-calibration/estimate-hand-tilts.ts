@@ -1,41 +1,34 @@
 import { defaultHandTilt, forearmRotation, type HandTilts, tiltRotation } from '../../body/hand-tilt';
-import { type MutableQuat, quat, rotate } from '../../math/quat';
+import { smoothingFactor } from '../../math/damper';
+import { type MutableQuat, type Quat, quat, rotate } from '../../math/quat';
 import { type Side, sides } from '../../math/side';
-import {
-  addScaled,
-  cross,
-  dot,
-  forward,
-  length,
-  type MutableVec3,
-  normalise,
-  scale,
-  setVec3,
-  vec3,
-} from '../../math/vec3';
-import type { CompletedFrame } from '../complete-hands';
-import type { IkSolution } from '../ik/solve-ik';
+import { addScaled, forward, lerp, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from '../../math/vec3';
 import handTilts from './hand-tilts.json' with { type: 'json' };
 
-const { calibratedMetres, doubtAngle, memoryMetres, usualMetres } = handTilts;
+const { calibratedWeight, halfLife, usualWeight } = handTilts;
 
 /** The estimated tilt of one hand to its forearm; directions from elbow to wrist in the frame of the tracked hand. */
 interface HandTiltState {
   /** The calibrated direction, or the default one, unit. */
   readonly prior: MutableVec3;
-  calibrated: boolean;
-  /** Sum of observed directions times metres of travel [m], decaying by 1/e in memoryMetres. */
+  /** The weight of the prior; that of the observed direction is 1. */
+  priorWeight: number;
+  /** The low-passed direction that IK gives without the tilt; zero before the hand is seen. */
   readonly observed: MutableVec3;
+  known: boolean;
 }
 
-export interface HandTiltsState {
-  readonly left: HandTiltState;
-  readonly right: HandTiltState;
+export interface HandTiltsState extends Readonly<Record<Side, HandTiltState>> {
   /** The rotation of each hand in its own frame after which its −Z continues the forearm. */
   readonly turns: Readonly<Record<Side, MutableQuat>>;
 }
 
-const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), calibrated: false, observed: vec3(0, 0, 0) });
+const makeHandTiltState = (): HandTiltState => ({
+  prior: vec3(0, 0, 0),
+  priorWeight: Number.NaN,
+  observed: vec3(0, 0, 0),
+  known: false,
+});
 
 /** Returns the state for a user with these calibrated tilts. */
 export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTiltsState {
@@ -44,61 +37,46 @@ export function makeHandTiltsState(calibrated: HandTilts | undefined): HandTilts
     right: makeHandTiltState(),
     turns: { left: quat(0, 0, 0, 1), right: quat(0, 0, 0, 1) },
   };
-  resetHandTilts(state, calibrated);
+  calibrateHandTilts(state, calibrated);
   return state;
 }
 
-/**
- * Resets the estimate to the tilts of another calibration. A recentring or a pause does not reset it, because the hands
- * hold the controllers as before.
- */
-export function resetHandTilts(state: HandTiltsState, calibrated: HandTilts | undefined): void {
+/** Resets the estimate to the tilts of another calibration. */
+export function calibrateHandTilts(state: HandTiltsState, calibrated: HandTilts | undefined): void {
   for (const side of sides) {
-    const hand = state[side];
     const tilt = calibrated?.[side];
-    rotate(tiltRotation(tilt ?? defaultHandTilt(side)), forward, hand.prior);
-    hand.calibrated = tilt !== undefined;
-    setVec3(hand.observed, 0, 0, 0);
-    turnAfter(state, side);
+    rotate(tiltRotation(tilt ?? defaultHandTilt(side)), forward, state[side].prior);
+    state[side].priorWeight = tilt ? calibratedWeight : usualWeight;
+  }
+  resetHandTilts(state);
+}
+
+/** Resets the estimate to the calibrated or default tilts. */
+export function resetHandTilts(state: HandTiltsState): void {
+  for (const side of sides) {
+    setVec3(state[side].observed, 0, 0, 0);
+    state[side].known = false;
+    writeTurn(state, side);
   }
 }
 
 const direction = vec3(0, 0, 0);
 
-/**
- * Weight of the prior, as the metres of observed travel it equals. A measured tilt's shrinks with the square of
- * doubtAngle/angle once prior and observations differ by more than doubtAngle; the usual tilt's is constant.
- */
-function priorMetres({ prior, calibrated, observed }: HandTiltState): number {
-  if (!calibrated) return usualMetres;
-  const angle = Math.atan2(length(cross(prior, observed, direction)), dot(prior, observed));
-  return angle > doubtAngle ? calibratedMetres * (doubtAngle / angle) ** 2 : calibratedMetres;
-}
-
-function turnAfter(state: HandTiltsState, side: Side): void {
-  const hand = state[side];
-  addScaled(hand.observed, hand.prior, priorMetres(hand), direction);
+function writeTurn(state: HandTiltsState, side: Side): void {
+  const { observed, prior, priorWeight } = state[side];
+  addScaled(observed, prior, priorWeight, direction);
   forearmRotation(normalise(direction, forward, direction), state.turns[side]);
 }
 
 /**
- * Accumulates, per tracked hand, the forearm direction that IK gives without knowledge of tilts (frame of the hand as
- * it is tracked), weighted by how far the hand has travelled about the head since the frame before. Takes effect next
- * frame. The input ignores the estimate, so errors cannot feed back; IK's own errors average out as the posture
- * changes. A hand at rest changes nothing.
+ * Low-passes the forearm direction of a tracked hand, as IK gives it without knowledge of tilts (unit, frame of the
+ * tracked hand), and returns the hand's rotation. The input ignores the estimate, so errors cannot feed back. The
+ * memory lasts seconds: a hand at rest has the same tilt wherever it came from.
  */
-export function estimateHandTilts(
-  state: HandTiltsState,
-  { untiltedForearms }: IkSolution,
-  { leftHand, rightHand }: Pick<CompletedFrame, 'leftHand' | 'rightHand'>,
-  travel: Readonly<Record<Side, number>>,
-): void {
-  for (const side of sides) {
-    const hand = side === 'left' ? leftHand : rightHand;
-    const metres = travel[side];
-    if (hand.source !== 'tracked' || metres === 0) continue;
-    const { observed } = state[side];
-    addScaled(scale(observed, Math.exp(-metres / memoryMetres), observed), untiltedForearms[side], metres, observed);
-    turnAfter(state, side);
-  }
+export function estimateHandTilt(state: HandTiltsState, side: Side, forearm: Vec3, deltaSeconds: number): Quat {
+  const hand = state[side];
+  lerp(hand.observed, forearm, hand.known ? smoothingFactor(halfLife, deltaSeconds) : 1, hand.observed);
+  hand.known = true;
+  writeTurn(state, side);
+  return state.turns[side];
 }

@@ -41,6 +41,7 @@ import type { TorsoBones } from './torso-bones';
 
 const { torso: torsoLimits, torsoExtreme: extremeLimits } = limits;
 const { anatomicalPasses, extremePasses } = limits.reach;
+const { shortestClavicle } = torsoLimits;
 
 /** The highest turning speed of the shoulders [rad/s]; a pirouette reaches 12. */
 const turnSpeed = 12;
@@ -292,6 +293,16 @@ function leanDirection(direction: Vec3, boneLength: number, offset: Vec3, target
   normalise(target, direction, target);
 }
 
+/**
+ * Writes the direction of a clavicle towards its shoulder's target, lengthened along the clavicle at rest: near the
+ * root, or behind it, the target has no side to swing to.
+ */
+function aimClavicle({ root, rest, wanted }: typeof clavicle, target: Vec3): MutableVec3 {
+  subtract(target, root, wanted);
+  const alongRest = dot(wanted, rest) / dot(rest, rest);
+  return alongRest < shortestClavicle ? addScaled(wanted, rest, shortestClavicle - alongRest, wanted) : wanted;
+}
+
 /** Writes a shoulder on its clavicle, which swings towards its target. */
 export function placeShoulder(
   side: Side,
@@ -302,7 +313,7 @@ export function placeShoulder(
 ): void {
   const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, clavicle.root);
   const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), clavicle.rest);
-  limitAngle(rotationBetween(rest, subtract(target, root, clavicle.wanted), swing), furthestSwing, swing);
+  limitAngle(rotationBetween(rest, aimClavicle(clavicle, target), swing), furthestSwing, swing);
   add(root, rotate(swing, rest, rest), shoulders[side]);
   multiply(swing, rotations.upperChest, clavicles[side]);
 }
