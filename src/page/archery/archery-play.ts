@@ -189,6 +189,8 @@ export class ArcheryPlay {
     this.#steered = createSteeredArcher(body);
     this.newest = null;
     this.#signalled = false;
+    // An arrow that was drawn before is no arrow of this round.
+    this.#handsReplaced = true;
   }
 
   /** Announces that the floor frame jumps before the next frame. */

@@ -1,4 +1,4 @@
-import { allReleased, createPageClock } from 'threepoint/core';
+import { allReleased, createPageClock, defaultCalibration } from 'threepoint/core';
 import { vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { probeOf } from '../../../src/page/archery/archery-play';
@@ -44,6 +44,19 @@ test.each([0.6, 3, 600])('a headset taken off at full draw for %d s, frames and 
   frame({ draw: 0.5 }, 0, 1000 * away);
   hold({ draw: 0.5 }, 0, 0.2);
   expect(said.at(-1)).toBe('cancelled');
+  expect(play.newest?.state).toMatchObject({ phase: 'ready', arrowsLeft: 5 });
+});
+
+test('a new round begins with five arrows, whoever drew the bow before', () => {
+  const { play, said, frame, hold } = range();
+  hold({}, 0, 0.1);
+  hold({}, 1, 0.1);
+  hold({ draw: 0.5 }, 1, 0.5);
+  expect(play.newest?.bow?.stage).toBe('anchored');
+  play.restart(defaultCalibration);
+  frame({}, 0);
+  hold({}, 0, 0.2);
+  expect(said).not.toContain('released');
   expect(play.newest?.state).toMatchObject({ phase: 'ready', arrowsLeft: 5 });
 });
 
