@@ -5,7 +5,6 @@ import type { SkeletonJoint } from '../../core/humanoid/joint-tree';
 import { type HumanoidMatch, humanoidProblem, matchHumanoid } from '../../core/humanoid/match-humanoid';
 import { type FileBones, fileBones, UnknownBonesError } from '../../core/humanoid/unknown-bones-error';
 import { distance, isFiniteVec3 } from '../../core/math/vec3';
-import type { LoadedAvatar } from '../load-avatar';
 import { meshesOf, skinnedMeshesOf } from '../scene-meshes';
 import { addHands } from './add-hands';
 import { assertNeededBones } from './needed-bones';
@@ -104,6 +103,10 @@ export interface SceneBones {
 
 type Bones = ReadonlyMap<BoneName, Object3D>;
 
+interface Humanoid extends Pick<SceneBones, 'notes'> {
+  readonly vrm: VRM;
+}
+
 const nodesOf = ({ map }: HumanoidMatch, nodes: readonly Object3D[]): Bones =>
   new Map(Object.entries(map).map(([bone, { joint }]) => [bone as BoneName, nodes[joint]!]));
 
@@ -164,7 +167,7 @@ function mappedBones(scene: Group, map: BoneMap, name: string): Pick<SceneBones,
  * Creates a VRM from a scene that is none. Its bones are those of `given`, or matched ones; the notes are sentences on
  * what was assumed. Throws an Error that names the file and the missing bone.
  */
-export function createHumanoid(scene: Group, name: string, given?: BoneMap): Pick<LoadedAvatar, 'vrm' | 'notes'> {
+export function createHumanoid(scene: Group, name: string, given?: BoneMap): Humanoid {
   scene.updateMatrixWorld(true);
   const { bones, notes } = given ? mappedBones(scene, given, name) : foundBones(scene, name);
   assertNeededBones(name, (bone) => bones.has(bone));
