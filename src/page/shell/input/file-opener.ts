@@ -1,6 +1,6 @@
 import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
 import { isSkeletonMap } from 'threepoint/motion';
-import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui';
+import { type FileKind, fileNameOf, formatSentence, readLimited } from 'threepoint-ui';
 import { isTable, purposeOfTable } from '../../mocap/table-files';
 import type { StageParts } from '../stage/stage-parts';
 
@@ -53,7 +53,10 @@ export class FileOpener {
     const { avatar, notices, mocap } = this.#parts;
     const outcome = await avatar.open(source);
     if (outcome === 'motion') await mocap.open([source]);
-    else if (outcome) notices.show('info', `${avatar.name} is your avatar now.`, 'avatar');
+    else if (outcome) {
+      const sentences = [`${avatar.name} is your avatar now.`, ...avatar.notes.map(formatSentence)];
+      notices.show('info', sentences.join(' '), 'avatar');
+    }
   }
 
   /**

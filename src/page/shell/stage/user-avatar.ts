@@ -11,7 +11,7 @@ import {
 import { type CheckedAvatar, MotionOnlyError } from 'threepoint/files';
 import { type Avatar, bodyLabelOf, weaveCloth } from 'threepoint/three';
 import type { OwnAvatar } from 'threepoint-rooms';
-import { fileNameOf, formatSentence } from 'threepoint-ui';
+import { fileNameOf } from 'threepoint-ui';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { SessionParts } from '../session/session-parts';
 import { ownColours } from '../session/settings';
@@ -56,6 +56,11 @@ export class UserAvatar {
 
   get name(): string {
     return this.#name;
+  }
+
+  /** What was assumed of its file, a sentence each. */
+  get notes(): readonly string[] {
+    return this.current?.notes ?? [];
   }
 
   /** Whether it is a built-in avatar, whose colours can be chosen. */
@@ -290,8 +295,6 @@ export class UserAvatar {
     if (turn === this.#requested) {
       this.#pending = null;
       notices.withdraw('avatar');
-      if (avatar.notes.length > 0)
-        notices.show('info', [`${name} is shown.`, ...avatar.notes.map(formatSentence)].join(' '), 'avatar');
     }
     this.recolour();
     if (typeof state.worn === 'string') {

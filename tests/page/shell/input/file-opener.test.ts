@@ -72,6 +72,7 @@ function files() {
           withdraw: () => undefined,
         },
         avatar: {
+          notes: ['no hand follows LowerArm.L: a joint was made where that arm ends'],
           name: 'robot.vrm',
           async open(source: string | File) {
             opened.push(source);
@@ -164,13 +165,14 @@ describe('a dropped file', () => {
     expect([recorder.name, recorder.mode]).toEqual(['slow.json', 'replaying']);
   });
 
-  test('a file of any other name is opened as an avatar, whose name is then announced', async () => {
+  test('a file of any other name is opened as an avatar; its name and what was assumed are announced', async () => {
     const { files: page, notices, opened, recorder } = files();
     const file = new File(['glTF'], 'robot.vrm');
     await page.open(file);
     expect(opened).toEqual([file]);
     expect(recorder.mode).toBe('idle');
-    expect(notices).toEqual([{ level: 'info', text: 'robot.vrm is your avatar now.' }]);
+    const note = 'No hand follows LowerArm.L: a joint was made where that arm ends.';
+    expect(notices).toEqual([{ level: 'info', text: `robot.vrm is your avatar now. ${note}` }]);
   });
 
   test.each([
