@@ -165,7 +165,7 @@ describe('a dropped file', () => {
     expect([recorder.name, recorder.mode]).toEqual(['slow.json', 'replaying']);
   });
 
-  test('a file of any other name is opened as an avatar; its name and what was assumed are announced', async () => {
+  test('another file is opened as an avatar; its name and assumptions are announced', async () => {
     const { files: page, notices, opened, recorder } = files();
     const file = new File(['glTF'], 'robot.vrm');
     await page.open(file);
