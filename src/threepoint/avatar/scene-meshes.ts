@@ -12,19 +12,32 @@ export const meshesOf = (scene: Object3D) => nodesThatAre('isMesh', scene) as re
 
 export const skinnedMeshesOf = (scene: Object3D) => nodesThatAre('isSkinnedMesh', scene) as readonly SkinnedMesh[];
 
-/** Returns the world positions of the vertices that these bones move by more than half. */
-export function skinMovedBy(scene: Object3D, bones: ReadonlySet<Object3D>): Vector3[] {
-  const places: Vector3[] = [];
-  for (const mesh of skinnedMeshesOf(scene)) {
-    const moves = mesh.skeleton.bones.map((bone) => bones.has(bone));
-    const { skinIndex, skinWeight } = mesh.geometry.attributes;
-    if (!moves.includes(true) || !skinIndex || !skinWeight) continue;
-    for (let vertex = 0; vertex < skinWeight.count; vertex++) {
-      let share = 0;
-      for (let i = 0; i < skinWeight.itemSize; i++)
-        if (moves[skinIndex.getComponent(vertex, i)]) share += skinWeight.getComponent(vertex, i);
-      if (share > 0.5) places.push(mesh.getVertexPosition(vertex, new Vector3()).applyMatrix4(mesh.matrixWorld));
-    }
+/** Returns the vertices of a skin that these bones move by more than a share. */
+export function verticesMovedBy(
+  { geometry, skeleton }: SkinnedMesh,
+  bones: ReadonlySet<Object3D>,
+  share: number,
+): readonly number[] {
+  const moves = skeleton.bones.map((bone) => bones.has(bone));
+  const { skinIndex, skinWeight } = geometry.attributes;
+  const vertices: number[] = [];
+  if (!moves.includes(true) || !skinIndex || !skinWeight) return vertices;
+  for (let vertex = 0; vertex < skinWeight.count; vertex++) {
+    let moved = 0;
+    for (let i = 0; i < skinWeight.itemSize; i++)
+      if (moves[skinIndex.getComponent(vertex, i)]) moved += skinWeight.getComponent(vertex, i);
+    if (moved > share) vertices.push(vertex);
   }
-  return places;
+  return vertices;
 }
+
+/** Returns the world positions of the vertices that these bones move by more than half. */
+export const skinMovedBy = (scene: Object3D, bones: ReadonlySet<Object3D>): readonly Vector3[] =>
+  skinnedMeshesOf(scene).flatMap((mesh) =>
+    verticesMovedBy(mesh, bones, 0.5).map((vertex) =>
+      mesh.getVertexPosition(vertex, new Vector3()).applyMatrix4(mesh.matrixWorld),
+    ),
+  );
+
+/** Returns the world position of a node. */
+export const placeOf = (node: Object3D): Vector3 => new Vector3().setFromMatrixPosition(node.matrixWorld);

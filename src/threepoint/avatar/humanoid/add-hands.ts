@@ -1,11 +1,9 @@
 import { Bone, type Object3D, Vector3 } from 'three';
 import { type BoneName, handFingerBones } from '../../core/humanoid/bones';
 import { type Side, sides } from '../../core/math/side';
-import { skinMovedBy } from '../scene-meshes';
+import { placeOf, skinMovedBy } from '../scene-meshes';
 
 type Bones = ReadonlyMap<BoneName, Object3D>;
-
-const at = (node: Object3D): Vector3 => new Vector3().setFromMatrixPosition(node.matrixWorld);
 
 /** Returns the mean of these places; null: there is none. */
 const middle = (places: readonly Vector3[]): Vector3 | null =>
@@ -28,10 +26,10 @@ const chainsOf = ({ children }: Object3D) => children.filter((child) => child.ch
  */
 function endOfSkin(scene: Object3D, upperArm: Object3D, forearm: Object3D): Vector3 | null {
   const skin = skinMovedBy(scene, new Set([forearm]));
-  const elbow = at(forearm);
+  const elbow = placeOf(forearm);
   const along = middle(skin)?.sub(elbow);
   if (!along) return null;
-  along.addScaledVector(elbow.clone().sub(at(upperArm)), 0.1).normalize();
+  along.addScaledVector(elbow.clone().sub(placeOf(upperArm)), 0.1).normalize();
   const far = skin.reduce((most, place) => Math.max(most, place.sub(elbow).dot(along)), 0);
   return elbow.addScaledVector(along, far);
 }
@@ -49,7 +47,7 @@ export function addHands(scene: Object3D, bones: Bones): Bones {
     const fingers = fingersOf(bones, side, forearm);
     // A chain that is no finger may be the hand under another name.
     const isLast = chainsOf(forearm).length === 0;
-    const place = middle(fingers.map(at)) ?? (isLast ? endOfSkin(scene, upperArm, forearm) : null);
+    const place = middle(fingers.map(placeOf)) ?? (isLast ? endOfSkin(scene, upperArm, forearm) : null);
     if (!place) continue;
     const hand = new Bone();
     hand.name = `${side}Hand`;

@@ -2,7 +2,7 @@ import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
 import { type BoneName, handFingerBones, neededBones } from '../../core/humanoid/bones';
 import { type Side, sides } from '../../core/math/side';
-import { skinMovedBy } from '../scene-meshes';
+import { placeOf, skinMovedBy } from '../scene-meshes';
 import { boneNode } from './needed-bones';
 
 // In this file a body at rest faces +Z, as a VRM does: its left is +X.
@@ -24,8 +24,6 @@ const armBend = 0.03;
 const handBend = 0.1;
 const legBend = 0.05;
 const handRoll = 0.15;
-
-const at = (node: Object3D): Vector3 => new Vector3().setFromMatrixPosition(node.matrixWorld);
 
 /** Returns the rotations that map axes to axes. */
 function axisRotations(): Matrix4[] {
@@ -68,7 +66,7 @@ class RestingBody {
 
   at(bone: BoneName): Vector3 | null {
     const node = this.node(bone);
-    return node && at(node);
+    return node && placeOf(node);
   }
 
   /** Rotates a bone and its descendants about its joint; further bones of the list move with it. */
@@ -76,7 +74,7 @@ class RestingBody {
     const nodes = bones.flatMap((bone) => this.node(bone) ?? []);
     const [pivot] = nodes;
     if (!pivot) return;
-    const centre = at(pivot);
+    const centre = placeOf(pivot);
     const move = new Matrix4()
       .makeTranslation(centre)
       .multiply(new Matrix4().makeRotationFromQuaternion(rotation))
@@ -101,7 +99,7 @@ function assertFiniteJoints(body: RestingBody): void {
   for (const bone of neededBones) {
     const node = body.node(bone);
     if (node && !node.matrixWorld.elements.every(Number.isFinite))
-      body.complain(`the joint of ${bone} lies nowhere (${at(node).toArray().join(', ')})`);
+      body.complain(`the joint of ${bone} lies nowhere (${placeOf(node).toArray().join(', ')})`);
   }
 }
 

@@ -1,4 +1,4 @@
-import { type BufferGeometry, type Object3D, type SkinnedMesh, Vector3 } from 'three';
+import { type Object3D, type SkinnedMesh, Vector3 } from 'three';
 import type { MutableJointPoses } from '../../core/body/forward-kinematics';
 import { fromAxisAngle, multiply, quat, rotate } from '../../core/math/quat';
 import {
@@ -14,7 +14,7 @@ import {
   type Vec3,
   vec3,
 } from '../../core/math/vec3';
-import { skinnedMeshesOf } from '../scene-meshes';
+import { skinnedMeshesOf, verticesMovedBy } from '../scene-meshes';
 import type { Rig } from './rig';
 
 /** The part of a trunk that is measured [fraction of the way from the hips to the neck], in so many slices. */
@@ -144,18 +144,15 @@ export class TrunkShape {
   /** Measures the trunk's triangles along their edges. */
   private measure(mesh: SkinnedMesh, bones: ReadonlySet<Object3D>): void {
     const { geometry } = mesh;
-    const isTrunk = trunkVertices(
-      geometry,
-      mesh.skeleton.bones.map((bone) => bones.has(bone)),
-    );
-    if (!isTrunk) return;
+    const vertices = verticesMovedBy(mesh, bones, trunkShare);
+    if (vertices.length === 0) return;
     const corners = geometry.index!;
     const [start, end] = [this.rig.rest('hips')!, this.rig.rest('neck') ?? this.rig.rest('head')!];
     const way = end.clone().sub(start);
-    const places = new Float64Array(3 * isTrunk.length);
+    // The slice of a vertex that is no part of the trunk stays NaN.
+    const places = new Float64Array(3 * geometry.getAttribute('position').count).fill(Number.NaN);
     const place = new Vector3();
-    for (let vertex = 0; vertex < isTrunk.length; vertex++) {
-      if (!isTrunk[vertex]) continue;
+    for (const vertex of vertices) {
       mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld).sub(start);
       const height = place.dot(way) / way.lengthSq();
       place.addScaledVector(way, -height);
@@ -165,9 +162,9 @@ export class TrunkShape {
       places[3 * vertex + 2] = place.z;
     }
     for (let corner = 0; corner < corners.count; corner++) {
-      const first = corners.getX(corner);
-      const second = corners.getX(corner % 3 === 2 ? corner - 2 : corner + 1);
-      if (isTrunk[first] && isTrunk[second]) this.addEdge(places, 3 * first, 3 * second);
+      const first = 3 * corners.getX(corner);
+      const second = 3 * corners.getX(corner % 3 === 2 ? corner - 2 : corner + 1);
+      if (!Number.isNaN(places[first]! + places[second]!)) this.addEdge(places, first, second);
     }
   }
 
@@ -190,16 +187,4 @@ export class TrunkShape {
       this.extents[at] = Math.max(this.extents[at]!, x * way.right + z * way.ahead);
     }
   }
-}
-
-/** Returns which vertices move with the trunk; null: none do. */
-function trunkVertices({ attributes }: BufferGeometry, isTrunkBone: readonly boolean[]): readonly boolean[] | null {
-  const { skinIndex, skinWeight } = attributes;
-  if (!isTrunkBone.includes(true) || !skinIndex || !skinWeight) return null;
-  return Array.from({ length: skinWeight.count }, (_, vertex) => {
-    let share = 0;
-    for (let i = 0; i < skinWeight.itemSize; i++)
-      if (isTrunkBone[skinIndex.getComponent(vertex, i)]) share += skinWeight.getComponent(vertex, i);
-    return share > trunkShare;
-  });
 }
