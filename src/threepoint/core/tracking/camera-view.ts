@@ -1,46 +1,20 @@
 import type { Pose } from '../math/pose';
-import { fromAxisAngle, rotate, rotateInverse } from '../math/quat';
-import { dot, forward, length, right, subtract, type Vec3, vec3 } from '../math/vec3';
-
-/** The region in which a headset's cameras see a hand: a cone with its tip between the eyes. */
-export interface CameraCone {
-  /** The angle of the whole cone. */
-  readonly degrees: number;
-  /** The angle by which its axis is below the gaze. */
-  readonly tiltDegrees: number;
-  /** The smallest and the largest distance of a wrist [m]. */
-  readonly nearest: number;
-  readonly furthest: number;
-}
+import { rotateInverse } from '../math/quat';
+import { dot, forward, length, subtract, type Vec3, vec3 } from '../math/vec3';
 
 /**
- * The view of a module for headsets: Stereo IR 170, at least 160° × 160°, from 10 cm to 75 cm
- * (ultraleap.com/company/news/blog/how-hand-tracking-works).
+ * The view of a module for headsets: a cone about the gaze with its tip between the eyes. Stereo IR 170 sees at least
+ * 160° × 160°, from 10 cm to 75 cm (ultraleap.com/company/news/blog/how-hand-tracking-works).
  */
-export const headsetCameras: CameraCone = { degrees: 160, tiltDegrees: 0, nearest: 0.1, furthest: 0.75 };
+const cosine = Math.cos((80 * Math.PI) / 180);
+const nearest = 0.1;
+const furthest = 0.75;
 
-const radians = Math.PI / 180;
+const fromEyes = vec3(0, 0, 0);
 
-/** The view of a headset's cameras, which contains the wrists that they see. */
-export class CameraView {
-  readonly #axis: Vec3;
-  readonly #cosine: number;
-  readonly #nearest: number;
-  readonly #furthest: number;
-  readonly #wrist = vec3(0, 0, 0);
-
-  constructor({ degrees, tiltDegrees, nearest, furthest }: CameraCone) {
-    this.#axis = rotate(fromAxisAngle(right, -tiltDegrees * radians), forward);
-    this.#cosine = Math.cos((degrees / 2) * radians);
-    this.#nearest = nearest;
-    this.#furthest = furthest;
-  }
-
-  /** Returns whether a wrist is within the cone of a headset at this pose, floor frame. */
-  sees(head: Pose<'floor'>, wrist: Vec3): boolean {
-    const seen = this.#wrist;
-    rotateInverse(head.orientation, subtract(wrist, head.position, seen), seen);
-    const metres = length(seen);
-    return metres >= this.#nearest && metres <= this.#furthest && dot(seen, this.#axis) >= this.#cosine * metres;
-  }
+/** Returns whether the cameras of a headset at this pose see a wrist, floor frame. */
+export function camerasSee(head: Pose<'floor'>, wrist: Vec3): boolean {
+  rotateInverse(head.orientation, subtract(wrist, head.position, fromEyes), fromEyes);
+  const metres = length(fromEyes);
+  return metres >= nearest && metres <= furthest && dot(fromEyes, forward) >= cosine * metres;
 }

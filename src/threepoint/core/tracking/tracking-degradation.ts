@@ -5,7 +5,7 @@ import { nextSeed, uniformFromSeed } from '../math/random';
 import { type Side, sides } from '../math/side';
 import { add, length, lerp, scale, setVec3, vec3 } from '../math/vec3';
 import type { Mutable } from '../records';
-import { CameraView, headsetCameras } from './camera-view';
+import { camerasSee } from './camera-view';
 import { deviceBodySize, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
@@ -15,7 +15,7 @@ export interface DegradationSettings {
   readonly latencyMs?: number;
   /** Normal noise, drawn for every frame: standard deviation along and about each axis. */
   readonly trackerNoise?: { readonly positionMm: number; readonly rotationDegrees: number };
-  /** Whether hands outside of the view of a headset's cameras (`headsetCameras`) are lost. */
+  /** Whether hands outside of the view of a headset's cameras (`camerasSee`) are lost. */
   readonly cameraView?: boolean;
   /** Each hand is lost for `seconds` at a time, after exponentially distributed waits. */
   readonly dropouts?: { readonly perMinute: number; readonly seconds: number };
@@ -98,7 +98,6 @@ export class TrackingDegradation {
   readonly #normals = new Float64Array(6);
   readonly #losses: Record<Side, Loss> = { left: { next: 0, until: 0 }, right: { next: 0, until: 0 } };
   #lossesDrawn = false;
-  readonly #cameras = new CameraView(headsetCameras);
   readonly #head = makeTrackedPose();
   readonly #hands = { left: makeTrackedPose(), right: makeTrackedPose() };
   readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
@@ -187,7 +186,7 @@ export class TrackingDegradation {
   #hide(written: WrittenFrame): void {
     for (let i = 0; i < sides.length; i++) {
       const hand = written[handOf[sides[i]!]];
-      if (hand && !this.#cameras.sees(written.head, hand.position)) written[handOf[sides[i]!]] = null;
+      if (hand && !camerasSee(written.head, hand.position)) written[handOf[sides[i]!]] = null;
     }
   }
 
