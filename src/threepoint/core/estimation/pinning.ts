@@ -43,7 +43,7 @@ export class Pins {
     bones: TorsoBones,
     deltaSeconds: number,
   ): TrackedFeet | undefined {
-    if (trackers) this.#watch.reportUnplaced(trackers);
+    if (trackers) this.#watch.reportUnplaced(trackers, this.#offsets);
     const joints = placeTrackedJoints(this.#joints, trackers, this.#offsets);
     pinTrunk(this.#trunk, torso, joints, frame, bones, deltaSeconds);
     this.#watch.follow(joints, torso, deltaSeconds);

@@ -36,7 +36,6 @@ export class TrackerWatch {
   readonly #report: TrackerReport | undefined;
   /** The time [s] for which each joint has been out of reach. */
   readonly #seconds = recordOf(trackerNames, () => 0);
-  #offsets: Calibration['trackerOffsets'];
   /** Whether each tracker was reported to have no offset. */
   readonly #unplaced = recordOf(trackerNames, () => false);
   #legReach = 0;
@@ -47,8 +46,7 @@ export class TrackerWatch {
   }
 
   /** Sets the measures; what is still out of reach is reported once more. */
-  calibrate({ eyeHeight, trackerOffsets }: Calibration): void {
-    this.#offsets = trackerOffsets;
+  calibrate({ eyeHeight }: Calibration): void {
     // From the hips to the ankle of a straight leg that is held out to its side.
     this.#legReach = (legProportions.hip - legProportions.ankle + legProportions.aside) * eyeHeight;
     for (const name of trackerNames) {
@@ -58,10 +56,10 @@ export class TrackerWatch {
   }
 
   /** Reports trackers without an offset, each once for each calibration. */
-  reportUnplaced(trackers: BodyTrackers): void {
+  reportUnplaced(trackers: BodyTrackers, offsets: Calibration['trackerOffsets']): void {
     for (let i = 0; i < trackerNames.length; i++) {
       const name = trackerNames[i]!;
-      if (!trackers[name] || this.#offsets?.[name] || this.#unplaced[name]) continue;
+      if (!trackers[name] || offsets?.[name] || this.#unplaced[name]) continue;
       this.#unplaced[name] = true;
       const message = `The ${words[name][0]} tracker is not used: the calibration has no trackerOffsets.${name}.`;
       this.#report?.({ tracker: name, far: 0, message });
