@@ -23,6 +23,8 @@ interface Votes {
   count: number;
 }
 
+const noVotes = (): Votes => ({ sum: 0, count: 0 });
+
 const vote = (votes: Votes, value: number, least: number): void => {
   if (Math.abs(value) < least) return;
   votes.sum += Math.sign(value);
@@ -53,11 +55,7 @@ function across(positions: readonly Vec3[], { limbs }: LimbPair): Vec3 {
 export function sidesInMotion(file: ImportedMotion, { legs, arms, trunk }: Body): LimbSides {
   const pair = legs ?? arms;
   const poses = createSkeletonPose(file.names.length);
-  const [anatomy, habit, along]: Votes[] = Array.from({ length: 3 }, () => ({ sum: 0, count: 0 })) as [
-    Votes,
-    Votes,
-    Votes,
-  ];
+  const [anatomy, habit, along] = [noVotes(), noVotes(), noVotes()];
   let [frames, before]: [number, Vec3 | null] = [0, null];
   for (const frame of sampledFrames(file.frameCount, maxFrames)) {
     const { positions } = file.pose(frame, poses);
@@ -68,21 +66,21 @@ export function sidesInMotion(file: ImportedMotion, { legs, arms, trunk }: Body)
     const aside = across(positions, pair);
     // The front if the first limb is the left one.
     const ahead = normalise(reject(cross(above, aside), above), zero);
-    if (legs) vote(along!, dot(normalise(across(positions, arms), zero), normalise(aside, zero)), 0.3);
+    if (legs) vote(along, dot(normalise(across(positions, arms), zero), normalise(aside, zero)), 0.3);
     for (const limb of legs?.limbs ?? []) {
-      vote(anatomy!, bendAhead(positions, limb, ahead), bent);
+      vote(anatomy, bendAhead(positions, limb, ahead), bent);
       const [foot, toes] = [limb.chain[limb.at[2]], limb.chain[limb.at[2] + 1]];
       if (foot !== undefined && toes !== undefined && foot !== limb.chain[limb.at[1]])
-        vote(anatomy!, dot(normalise(subtract(positions[toes]!, positions[foot]!), zero), ahead), footAhead);
+        vote(anatomy, dot(normalise(subtract(positions[toes]!, positions[foot]!), zero), ahead), footAhead);
     }
-    for (const limb of arms.limbs) vote(habit!, -bendAhead(positions, limb, ahead), bent);
+    for (const limb of arms.limbs) vote(habit, -bendAhead(positions, limb, ahead), bent);
     const step = before ? dot(subtract(hips, before), ahead) : 0;
-    vote(habit!, step, smallestStep * length(trunkLine));
+    vote(habit, step, smallestStep * length(trunkLine));
     before = hips;
   }
-  const frontShown = isClear(anatomy!, frames);
-  const votes = frontShown ? anatomy! : habit!;
+  const frontShown = isClear(anatomy, frames);
+  const votes = frontShown ? anatomy : habit;
   const first = frontShown || isClear(votes, frames) ? (votes.sum > 0 ? 'left' : 'right') : null;
-  const arm = !legs ? first : first && isClear(along!, frames) ? (along!.sum > 0 ? first : otherSide(first)) : null;
+  const arm = !legs ? first : first && isClear(along, frames) ? (along.sum > 0 ? first : otherSide(first)) : null;
   return { placed: [legs ? first : null, arm], frontShown };
 }
