@@ -47,7 +47,7 @@ test.each([0.6, 3, 600])('a headset taken off at full draw for %d s, frames and 
   expect(play.newest?.state).toMatchObject({ phase: 'ready', arrowsLeft: 5 });
 });
 
-test('a new round begins with five arrows, whoever drew the bow before', () => {
+test('a new round begins with five arrows and an undrawn bow', () => {
   const { play, said, frame, hold } = range();
   hold({}, 0, 0.1);
   hold({}, 1, 0.1);
