@@ -51,16 +51,18 @@ export function spineOf({ parents }: ImportedMotion, joints: BodyJoints): readon
   return [...meeting, ...apart];
 }
 
-/** Returns frames in which a body stands, in its own axes; where it never stands, its trunk counts as upright. */
+/** Returns frames in which trunk or legs stand, in the body’s axes; where none does, the trunk counts as upright. */
 function bodyFrames(file: ImportedMotion, joints: BodyJoints, above: Vec3): readonly BodyFrame[] {
   const tree = bodyTree(file, joints);
   const seen = file.parents.map((parent, i) => tree.has(i) || tree.has(parent));
   const poses = createSkeletonPose(file.names.length);
+  const feet = sides.flatMap((side) => joints[`${side}Foot`] ?? []);
   const [upright, lying]: [BodyFrame[], BodyFrame[]] = [[], []];
   for (const frame of sampledFrames(file.frameCount)) {
     const { positions, rotations } = file.pose(frame, poses);
     const trunk = trunkDirection(positions, joints);
-    const stands = dot(trunk, above) > standing;
+    const legs = feet.map((foot) => normalise(subtract(positions[joints.hips]!, positions[foot]!), zero));
+    const stands = dot(trunk, above) > standing || (legs.length > 0 && legs.every((leg) => dot(leg, above) > standing));
     const turn = bodyFloor(positions, joints, stands ? above : trunk);
     if (!turn) continue;
     (stands ? upright : lying).push({

@@ -6,12 +6,13 @@ import { directions } from './read-skeleton-map';
 
 /** A rotation at rest deviates from a right angle by less than this [rad] where its file has right angles. */
 const nearRightAngle = 0.5;
-/** The largest yaw [rad] between a rest that faces along an axis of its file and the mean of its motion. */
+/** The largest angle [rad] between a rest that stands along the axes of its file and the places of its joints. */
 const facingAxis = 0.35;
 /** The largest angle between joints of a trunk that rest alike [rad]. */
 const alike = 0.8;
-/** The largest lean of a joint of the trunk against its rest [rad]. */
-export const largestLean = 1.1;
+/** The largest turn about the vertical, and the largest lean, of a joint of the trunk against its rest [rad]. */
+export const largestYaw = 1.4;
+export const largestLean = 1.45;
 /** The smallest number of joints that show how a trunk rests. */
 const fewestAlike = 3;
 /** The rotations of more than this fraction of the trunk’s joints decide how its file rests. */
@@ -41,15 +42,14 @@ export function isTurnedBy(rotation: Quat, from: Quat, mostYaw: number, mostLean
   return Math.abs(yaw) < mostYaw && angleBetween(fromAxisAngle(up, yaw), since) < mostLean;
 }
 
-/** Returns the rotation to the floor that most joints of the trunk share at rest; null: they do not rest alike. */
-export function sharedRest(rotations: readonly Quat[]): Quat | null {
+/**
+ * Returns the rotation to the floor that most joints of a trunk share at rest; null: they do not rest alike.
+ * `rotations`: their mean rotations; `stands`: the rotation in which their places at rest stand and face ahead.
+ */
+export function sharedRest(rotations: readonly Quat[], stands: Quat): Quat | null {
   const near = rotations.map((one) => rotations.filter((other) => angleBetween(one, other) < alike));
   const most = near.reduce((a, b) => (b.length > a.length ? b : a));
   if (most.length < fewestAlike || most.length <= majority * rotations.length) return null;
-  const mean = meanRotation(most);
-  const { turn } = nearestRightAngle(mean);
-  if (!isTurnedBy(mean, turn, Math.PI, largestLean)) return null;
-  // A rest may face anywhere; it stands upright.
-  const yaw = twistAngle(multiply(mean, conjugate(turn)), up);
-  return Math.abs(yaw) < facingAxis ? turn : multiply(fromAxisAngle(up, yaw), turn);
+  const rest = asRightAngle(stands, facingAxis) ?? stands;
+  return isTurnedBy(meanRotation(most), rest, largestYaw, largestLean) ? rest : null;
 }

@@ -17,26 +17,27 @@ import { type Side, sides } from '../math/side';
 import { parentsFirst } from '../math/tree';
 import { add, dot, down, normalise, right, scale, subtract, up, zero } from '../math/vec3';
 import { createSkeletonPose, type ImportedMotion, type SkeletonPose } from '../motion/imported-motion';
-import { type BodyJoints, bodyFloor, defaultFloor, standing, turnBetween, upAtRest } from './body-axes';
+import { type BodyJoints, bodyFloor, defaultFloor, standing, trunkDirection, turnBetween, upAtRest } from './body-axes';
 import { armOf, bodyTree, level, ObservedBody, spineOf } from './observed-body';
 import { meanRotation } from './observed-rotations';
 import { directions } from './read-skeleton-map';
 import { armFault, type RestJoints } from './rest-joints';
-import { asRightAngle, isTurnedBy, largestLean, majority, nearestRightAngle, sharedRest } from './right-angles';
+import {
+  asRightAngle,
+  isTurnedBy,
+  largestLean,
+  largestYaw,
+  majority,
+  nearestRightAngle,
+  sharedRest,
+} from './right-angles';
 import { truthJoints } from './skeleton-map';
 
-/** The largest yaw and lean of a head against a right angle: heads look aside and down [rad]. */
-const rightYaw = 0.6;
-const rightLean = 0.75;
 /** The largest angle of a hand, and of an arm whose elbow bends forward, against a right angle [rad]. */
 const rightHand = 0.75;
 const rightArm = 0.65;
-/**
- * The largest turn about the vertical [rad] of a joint of the trunk against its rest: in a motion that shows its
- * T-pose, and in one that shows nothing, where joint limits alone count.
- */
+/** The largest turn about the vertical [rad] of a joint of the trunk against its rest where the motion is clear. */
 const clearYaw = 0.7;
-const largestYaw = 1.4;
 /** The largest mean bend of a hand against its forearm at rest, and the largest mean twist [rad]. */
 const largestBend = 1.05;
 const largestPronation = 1.4;
@@ -82,6 +83,20 @@ function standingRest(body: ObservedBody): Quat | null {
   return stands ? right : null;
 }
 
+/** Returns the rotation in which the trunk at rest stands and faces ahead, by the joints that it carries. */
+function trunkAtRest({ file, joints }: ObservedBody): Quat | null {
+  const {
+    hips,
+    neck,
+    leftUpperArm,
+    rightUpperArm,
+    leftShoulder = leftUpperArm,
+    rightShoulder = rightUpperArm,
+  } = joints;
+  const trunk = { hips, neck, leftUpperArm: leftShoulder!, rightUpperArm: rightShoulder! };
+  return bodyFloor(file.rest, trunk, trunkDirection(file.rest, joints));
+}
+
 /** Finds how the joints of a body are rotated in T-pose, each against the floor frame. */
 class TPoseFinder {
   readonly notes: string[] = [];
@@ -103,7 +118,8 @@ class TPoseFinder {
     this.#trunk = [...new Set([...spine, ...clavicles])];
     const means = this.#trunk.map((joint) => body.mean(joint));
     this.#standing = standingRest(body);
-    this.shared = this.#standing ?? sharedRest(means.slice(0, spine.length));
+    const stands = trunkAtRest(body);
+    this.shared = this.#standing ?? (stands && sharedRest(means.slice(0, spine.length), stands));
     const right = means.filter((mean) => asRightAngle(mean) !== null);
     this.#snaps = !body.posed && (this.shared !== null || right.length > majority * means.length);
   }
@@ -130,9 +146,8 @@ class TPoseFinder {
     // The places of the joints of a standing rest show how the trunk leans.
     const lean = this.#standing && !isHead ? Math.PI : largestLean;
     if (this.shared && isTurnedBy(mean, this.shared, yaw, lean)) return this.shared;
-    const { turn } = nearestRightAngle(mean);
-    const isNear = isHead ? isTurnedBy(mean, turn, rightYaw, rightLean) : asRightAngle(mean) !== null;
-    const right = this.#snaps && isNear ? turn : null;
+    // Heads look aside and down: theirs is the next right angle, however far.
+    const right = this.#snaps ? asRightAngle(mean, isHead ? Math.PI : undefined) : null;
     this.changed.add(isHead ? 'head' : 'trunk');
     if (isHead && !right) this.sureness = Math.min(this.sureness, sure);
     return right;

@@ -66,7 +66,7 @@ describe('arms', () => {
     ['learned', openPlainModel()],
   ] as const)('pronation moves the elbow outward and supination inward, alike on both sides: %s', (name, network) => {
     for (const { x, y, z } of [vec3(0.2, 1.15, -0.38), vec3(0.5, 1.2, -0.2), vec3(0.2, 1.45, -0.4)]) {
-      const [supinated, thumbUp, pronated] = [-80, 0, 80].map((roll) => {
+      const [farSupinated, supinated, thumbUp, pronated, farPronated] = [-120, -80, 0, 80, 120].map((roll) => {
         const hand = (sigma: number) => {
           const orientation = wristOrientation(vec3(-0.15 * sigma, 0.1, -1), vec3(sigma, 0, 0));
           const turned = multiply(orientation, fromAxisAngle(backward, sigma * roll * degrees));
@@ -81,6 +81,8 @@ describe('arms', () => {
       });
       expect(pronated!).toBeGreaterThan(thumbUp! + 0.01);
       expect(supinated!).toBeLessThan(thumbUp! - 0.01);
+      expect(farPronated!).toBeGreaterThan(thumbUp! + 0.03);
+      expect(farSupinated!).toBeLessThan(thumbUp! + 0.005);
     }
   });
 

@@ -102,6 +102,33 @@ describe('a walk is read as with its T-pose at rest where', () => {
   });
 });
 
+describe('a trunk that rests along another axis than arms and legs keeps its T-pose in', () => {
+  const sideways = fromAxisAngle(right, -Math.PI / 2);
+  const rollOf = (name: string) => {
+    if (/^(Spine|Neck|Head)/.test(name)) return fromAxisAngle(forward, Math.PI / 2);
+    return /^Left/.test(name) ? multiply(sideways, sideways) : sideways;
+  };
+  test.each([
+    ['a walk', [0, 0, 0]],
+    ['a walk with a deep stoop', [0, 38, 0]],
+  ] as const)('%s', (_, stoop) => {
+    const anglesAt = (name: string, time: number) => (/^Spine/.test(name) ? stoop : walkingAnglesAt(name, time));
+    const { furthest, cosine, taller } = compared(madeBvh({ ...walk, anglesAt }), { rollOf });
+    expect(furthest).toBeLessThan(0.1);
+    expect(cosine).toBeGreaterThan(0.9999);
+    expect(taller).toBeLessThan(0.001);
+  });
+});
+
+test('a head that mostly looks aside rests at the right angle that is next', () => {
+  const anglesAt = (name: string, time: number) => {
+    const [z, x, y] = walkingAnglesAt(name, time);
+    return [z, x, name === 'Head' ? y + 40 : y] as const;
+  };
+  const { cosine } = compared(madeBvh({ ...walk, anglesAt }), { rollOf: rolls(3, 'right angles') });
+  expect(cosine).toBeGreaterThan(0.9999);
+});
+
 describe('joints with any frames keep their places and the gaze in', () => {
   const sitting = (name: string, time: number) => {
     if (/UpLeg/.test(name)) return [0, -88 + 4 * Math.sin(3 * time), 0] as const;
