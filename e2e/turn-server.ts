@@ -1,6 +1,7 @@
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
+import { setTimeout } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { parse } from 'yaml';
 import { installed } from '../tests/server/installed';
@@ -31,9 +32,10 @@ export async function startTurn() {
     '--relay-ip=127.0.0.1',
     '--no-tls',
     '--no-dtls',
+    // The deployment denies peers on the relay's own machine; in this test both peers are on it.
+    ...['--allow-loopback-peers', '--no-cli'],
   ];
-  // The deployment denies peers on the relay's own machine; in this test both peers are on it.
-  const child = spawn(turnProgram ?? 'turnserver', [...composeArguments(), ...here, '--allow-loopback-peers'], {
+  const child = spawn(turnProgram ?? 'turnserver', [...composeArguments(), ...here], {
     stdio: ['ignore', 'pipe', 'pipe'],
   });
   let said = '';
@@ -42,12 +44,12 @@ export async function startTurn() {
   };
   child.stdout.setEncoding('utf8').on('data', hear);
   child.stderr.setEncoding('utf8').on('data', hear);
+  while (!said.includes('auth thread')) {
+    if (child.exitCode !== null) throw new Error(`coturn ended: ${said}`);
+    await setTimeout(50);
+  }
   return {
     url: `turn:127.0.0.1:${port}?transport=udp`,
-    /** The log output of coturn. */
-    get said() {
-      return said;
-    },
     async close() {
       if (child.exitCode !== null) return;
       const gone = once(child, 'exit');
