@@ -9,6 +9,7 @@ import type { TrackingFrame } from '../../../../src/threepoint/core/tracking/tra
 import { evenly, seed } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 import { poseOf } from './drawn';
+import { quat, readGolden } from './golden';
 import { tracked, wristOrientation } from './moving-person';
 import { calibration, degrees } from './posed-body';
 import { openPlainModel } from './shipped-models';
@@ -64,6 +65,14 @@ describe('the share of the network’s correction', () => {
       }
     }
   });
+});
+
+test('TypeScript agrees with Python about the share', () => {
+  const rows = readGolden<{ height: number; orientation: readonly number[]; share: number }[]>('correction-share.json');
+  for (const { height, orientation, share } of rows) {
+    const head = { position: vec3(0, height * eyeHeight, 0), orientation: quat(orientation) };
+    expect(correctionShare(head, eyeHeight)).toBeCloseTo(share, 6);
+  }
 });
 
 describe('the learned body', () => {

@@ -4,10 +4,7 @@ import { rotate } from '../../math/quat';
 import { up, vec3 } from '../../math/vec3';
 import limits from '../kinematic-limits.json' with { type: 'json' };
 
-/** The distance from headset to hips [eye heights] with which the limits of the doubt were chosen. */
-const headsetToHips = 0.5;
-/** The doubt [eye heights] up to which the share is 1, and from which on it is 0. */
-const [certain, doubtful] = [0.4, 0.6];
+const { hipsDoubt, ik } = limits;
 
 const headUp = vec3(0, 0, 0);
 
@@ -18,7 +15,7 @@ const headUp = vec3(0, 0, 0);
  */
 export function correctionShare({ position, orientation }: Pose<'heading'>, eyeHeight: number): number {
   const height = position.y / eyeHeight;
-  const hanging = Math.max(height - headsetToHips, limits.ik.lowestHips);
-  const continued = height - headsetToHips * rotate(orientation, up, headUp).y;
-  return 1 - smoothstep(certain, doubtful, continued - hanging);
+  const hanging = Math.max(height - hipsDoubt.headsetToHips, ik.lowestHips);
+  const continued = height - hipsDoubt.headsetToHips * rotate(orientation, up, headUp).y;
+  return 1 - smoothstep(hipsDoubt.none, hipsDoubt.full, continued - hanging);
 }
