@@ -25,6 +25,9 @@ const options = JSON.parse(process.argv[2] ?? '') as Readonly<
 const clipCalibration = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
   calibrationOf(index, clip, { hands: options['hands-measured'], forearm: options['forearm-typed'] });
 
+/** The methods whose disturbances and speeds docs/accuracy.md has. */
+const disturbedMethods = ['ik', 'learned'] as const satisfies readonly MeasuredMethod[];
+
 type Exact = Partial<Record<MeasuredMethod, Report>>;
 
 /** The share of the work that is done, on a terminal only; nothing remains of it at the end. */
@@ -150,7 +153,7 @@ function printResult({ index, people, seen, unseen }: Corpus, result: ReturnType
 /** The judged clips again, each with one thing wrong; `tracking`: the device whose noise and losses they have. */
 function measureDisturbed({ recordings, index, regressors, judged }: Corpus, tracking: DeviceTracking) {
   return measureRobustness({
-    methods: measuredMethods,
+    methods: disturbedMethods,
     clips: chooseClips(judged, robustnessFrames),
     load: (clip) => ({
       name: clip.name,
@@ -170,7 +173,7 @@ async function measureSpeeds({ recordings, index, regressors, judged }: Corpus) 
   for (const clip of judged) {
     const calibration = clipCalibration(index, clip);
     const frames = readClip(recordings, index, clip);
-    for (const name of measuredMethods) {
+    for (const name of disturbedMethods) {
       tallies[name] ??= emptySpeedTally();
       const regressor = regressors.get(name) ?? null;
       await addSpeeds(tallies[name], name, { calibration, regressor, frames, rateHz: index.rateHz });

@@ -28,6 +28,12 @@ def test_golden_features_are_what_the_features_are_now():
     assert_as_committed("features.json", golden.feature_vectors(), atol=1e-7)
 
 
+def test_golden_shares_are_what_the_shares_are_now():
+    shares = golden.correction_share_vectors()
+    assert_as_committed("correction-share.json", shares, atol=1e-9)
+    assert {0.0, 1.0} < {each["share"] for each in shares}
+
+
 def test_golden_windows_are_what_the_boards_inputs_are_now():
     assert_as_committed("windows.json", golden.window_vectors(), atol=1e-6)
 

@@ -49,6 +49,17 @@ def test_a_network_that_corrects_nothing_errs_as_ik_does():
         assert all(each.ratio == pytest.approx(1.0, abs=1e-6) for each in people.values())
 
 
+def test_an_upside_down_head_has_iks_error_whatever_the_network_corrects():
+    held_out = train_learned.held_out(CORPUS, ("002",), (0.0,), hands_measured=False)
+    corrections = np.full((len(held_out.inputs), 18), 0.05, np.float32)
+    upright, of_ik = train_learned.fitted_errors_cm(corrections, held_out), train_learned.ik_errors_cm(held_out)
+    assert np.abs(upright - of_ik).mean() > 1
+    held_out.inputs[:, HEAD_AXES.start + 4] = -1
+    np.testing.assert_array_equal(
+        train_learned.fitted_errors_cm(corrections, held_out), train_learned.ik_errors_cm(held_out)
+    )
+
+
 def test_the_worse_half_is_of_those_for_whom_the_network_does_least():
     people = {"a": person(10.0, 9.0), "b": person(4.0, 2.0), "c": person(5.0, 5.5), "d": person(8.0, 6.0)}
     assert selection.worse_half(people) == ("a", "c")

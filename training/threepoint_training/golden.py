@@ -13,13 +13,13 @@ from . import estimate_hand_tilts, estimate_headset_rise, hand_tilt, quaternion,
 from .arrays import Array
 from .chest_features import chest_axes
 from .estimate_hand_tilts import CalibratedTilts
-from .features import frame_features
+from .features import FEATURES, HEAD_AXES, HEADSET_HEIGHT, frame_features
 from .generated_motion import generate_clip
 from .golden_mocap import mocap_vectors
 from .paper_features import paper_features
 from .paper_orientations import DRAWN_JOINTS, paper_body
 from .prepared_corpus import Person
-from .residual import network_input
+from .residual import correction_share, network_input
 from .shared_constants import REPOSITORY
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration, rest_offsets
@@ -140,6 +140,19 @@ def headset_rise_vectors() -> dict[str, Any]:
     names = ("seconds", "reach", "seen", "hangingReach", "rise")
     frames = [dict(zip(names, each, strict=True)) for each in zip(seconds, reach, seen, followed, rises, strict=True)]
     return {"arm": arm, "frames": frames}
+
+
+def correction_share_vectors() -> list[dict[str, Any]]:
+    """Heads at heights [eye heights] and in orientations of all kinds, and the share of the correction under them."""
+    random = np.random.default_rng(37)
+    count = 60
+    heights, orientations = random.uniform(0.03, 1.3, count), random.normal(size=(count, 4))
+    orientations /= np.linalg.norm(orientations, axis=1, keepdims=True)
+    inputs = np.zeros((count, FEATURES))
+    inputs[:, HEADSET_HEIGHT] = heights
+    inputs[:, HEAD_AXES.start + 4] = quaternion.rotate(orientations, np.broadcast_to([0.0, 1.0, 0.0], (count, 3)))[:, 1]
+    rows = zip(heights, orientations, correction_share(inputs), strict=True)
+    return [dict(zip(("height", "orientation", "share"), row, strict=True)) for row in rows]
 
 
 def _hands_before_the_trunk(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
@@ -290,10 +303,11 @@ def window_vectors() -> list[dict[str, Any]]:
 
 
 def main(config: GoldenConfig) -> None:
-    """Writes features.json, fitted-joints.json, headset-rise.json, mocap.json and windows.json in tests/golden,
-    and models.json where there are models.
+    """Writes correction-share.json, features.json, fitted-joints.json, headset-rise.json, mocap.json and windows.json in
+    tests/golden, and models.json where there are models.
     """
     GOLDEN.mkdir(parents=True, exist_ok=True)
+    (GOLDEN / "correction-share.json").write_text(json.dumps(plain(correction_share_vectors())) + "\n")
     (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
     (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")
     (GOLDEN / "headset-rise.json").write_text(json.dumps(plain(headset_rise_vectors())) + "\n")

@@ -82,17 +82,17 @@ def _together(values: Iterable[float], digits: int) -> str:
     return "/".join(f"{value:.{digits}f}" for value in values)
 
 
-def table_1(page: Json, held_out: Json | None) -> str:
+def table_1(page: Json, held_out: Json) -> str:
     """Returns MSE by joint: the paper's, ours of standardised coordinates, and of people held out in cm²."""
 
     def row(label: str, published: tuple[float, float], figure: Callable[[dict[str, float]], float]) -> list[str]:
         ours = (figure(page[side]["mseStandardised"]) for side in _MPJPE_CM)
-        new = [f"{figure(held_out['test']['mseCm2']):.1f}"] if held_out else []
-        return [label, _together(published, 4), _together(ours, 4), *new]
+        new = f"{figure(held_out['test']['mseCm2']):.1f}"
+        return [label, _together(published, 4), _together(ours, 4), new]
 
     rows = [row(label, _MSE[joint], itemgetter(joint)) for joint, label in _JOINTS.items()]
     rows.append(row("mean", (0.0277, 0.0448), _mean))
-    return table(["MSE, train/test", "paper", "ours", *(["people held out [cm²]"] if held_out else [])], rows)
+    return table(["MSE, train/test", "paper", "ours", "people held out [cm²]"], rows)
 
 
 def tables_2_and_3(page: Json, ik: Json, path: Json) -> str:
@@ -119,7 +119,7 @@ def tables_2_and_3(page: Json, ik: Json, path: Json) -> str:
 
 
 def table_4(readings: dict[str, Json]) -> str:
-    """Returns the MPJPE of every reading that was trained, nearest to the paper's first."""
+    """Returns the MPJPE of every reading, nearest to the paper's first."""
     rows = [["**the paper**", "22", f"**{_together(_MPJPE_CM.values(), 2)}**", "0.0448"]]
     for name in sorted(readings, key=lambda name: _distance_from_the_paper(readings[name])):
         reading = readings[name]
@@ -146,14 +146,14 @@ def tables_5_and_6(path: Json) -> str:
 
 
 def sections(readings: dict[str, Json], ik: Json | None, held_out: Json | None, path: Json) -> dict[str, str | None]:
-    """Returns the page's tables by their marks; None keeps a table whose stage was not run."""
+    """Returns the page's tables by their marks; None keeps a table of which a stage was not run."""
     page = readings.get("page")
     frames = f"{page['frames']:,} frames of {len(page['people'])} people" if page else ""
     return {
         "corpus": f"{frames}; {path['frames']:,} frames of {len(path['people'])} new people." if page else None,
-        "table-1": table_1(page, held_out) if page else None,
+        "table-1": table_1(page, held_out) if page and held_out else None,
         "tables-2-3": tables_2_and_3(page, ik, path) if page and ik else None,
-        "table-4": table_4(readings) if readings else None,
+        "table-4": table_4(readings) if readings.keys() == LABELS.keys() else None,
         "tables-5-6": tables_5_and_6(path),
     }
 

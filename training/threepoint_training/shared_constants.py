@@ -14,6 +14,7 @@ def _read(file: str) -> dict[str, Any]:
 
 _LIMITS = _read("estimation/kinematic-limits.json")
 IK: dict[str, Any] = _LIMITS["ik"]
+HIPS_DOUBT: dict[str, float] = _LIMITS["hipsDoubt"]
 TORSO: dict[str, float] = _LIMITS["torso"]
 TORSO_EXTREME: dict[str, float] = _LIMITS["torsoExtreme"]
 REACH: dict[str, Any] = _LIMITS["reach"]

@@ -20,7 +20,7 @@ from .estimate_hand_tilts import NO_CALIBRATED_TILTS, CalibratedTilts
 from .features import frame_features
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
-from .residual import OUTPUTS, network_input, residual
+from .residual import OUTPUTS, correction_share, network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
 from .train_paper import predict
@@ -143,9 +143,9 @@ def _measured(tilts: Array, wearer: Wearer, name: str) -> CalibratedTilts:
 
 
 def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> Array:
-    """Distances [F, 6] in centimetres of a network's output, after torso and arm fitting."""
-    raw = np.broadcast_to(output, people.targets.shape).reshape(-1, 6, 3).astype(np.float32)
-    fitted = DifferentiableKinematics()(torch.from_numpy(raw), torch.from_numpy(people.inputs))
+    """Distances [F, 6] in centimetres of a network's output, as far as it counts, after torso and arm fitting."""
+    counted = (output * correction_share(people.inputs)[:, None]).reshape(-1, 6, 3).astype(np.float32)
+    fitted = DifferentiableKinematics()(torch.from_numpy(counted), torch.from_numpy(people.inputs))
     return raw_errors_cm(fitted.numpy().reshape(-1, OUTPUTS), people)
 
 

@@ -84,7 +84,8 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
       window.read(golden.window, input);
       chestFeatures(points, solution, body, input, golden.window.length * featureCount);
       expectNear(input, golden.inputs[index]!, `input ${index}`);
-      expectNear(paperFeatures(seen.head, seen.leftHand, seen.rightHand), frame.paperInput, 'paper');
+      const paperInput = paperFeatures(seen.head, seen.leftHand, seen.rightHand, floorFromHeading(seen.head));
+      expectNear(paperInput, frame.paperInput, 'paper');
     });
   });
 });

@@ -1,8 +1,15 @@
 import { estimatedJoints } from '../../body/joints';
-import { invertTransform, makePose, makeTransform, type Pose, transformPoint, transformPose } from '../../math/pose';
+import {
+  invertTransform,
+  makePose,
+  makeTransform,
+  type Pose,
+  type Transform,
+  transformPoint,
+  transformPose,
+} from '../../math/pose';
 import { toEulerYxz } from '../../math/quat';
 import { setVec3, type Vec3, vec3 } from '../../math/vec3';
-import { floorFromHeading } from '../../tracking/heading';
 import { type MutableJointPositions, makeJoints, transformJoints } from '../joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from '../joint-source';
 import { LatestResult } from '../networks/latest-result';
@@ -11,8 +18,7 @@ import type { PoseRegressor } from '../networks/pose-regressor';
 /** The number of features: two quantities of three components for three points. */
 const paperFeatureCount = 18;
 
-const floorFromHead = makeTransform<'floor', 'heading'>();
-const headFromFloor = makeTransform<'heading', 'floor'>();
+const headingFromFloor = makeTransform<'heading', 'floor'>();
 const inHeading = makePose<'heading'>();
 const angles = vec3(0, 0, 0);
 
@@ -23,7 +29,7 @@ function write(target: Float32Array, start: number, { x, y, z }: Vec3): void {
 }
 
 function writePoint(target: Float32Array, column: number, point: Pose<'floor'>): void {
-  transformPose(headFromFloor, point, inHeading);
+  transformPose(headingFromFloor, point, inHeading);
   write(target, column, inHeading.position);
   write(target, 9 + column, toEulerYxz(inHeading.orientation, angles));
 }
@@ -36,9 +42,10 @@ export function paperFeatures(
   head: Pose<'floor'>,
   leftHand: Pose<'floor'>,
   rightHand: Pose<'floor'>,
+  floorFromHeading: Transform<'floor', 'heading'>,
   target: Float32Array = new Float32Array(paperFeatureCount),
 ): Float32Array {
-  invertTransform(floorFromHeading(head, floorFromHead), headFromFloor);
+  invertTransform(floorFromHeading, headingFromFloor);
   writePoint(target, 0, head);
   writePoint(target, 1, leftHand);
   writePoint(target, 2, rightHand);
@@ -66,9 +73,9 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   const network: JointNetwork = {
     // Its joints are not filtered, so that each frame needs a result of its own.
     wantsFrames: true,
-    ask({ trackers: { head, leftHand, rightHand } }) {
+    ask({ trackers: { head, leftHand, rightHand }, floorFromHeading }) {
       if (inference.running) return inference.running;
-      return inference.start(paperFeatures(head.value, leftHand.value, rightHand.value, input));
+      return inference.start(paperFeatures(head.value, leftHand.value, rightHand.value, floorFromHeading, input));
     },
     answer(solved) {
       if (inference.output === null) return null;

@@ -8,6 +8,7 @@ import { add, lerp, scale, setVec3 } from '../../math/vec3';
 import { copyJoints, type MutableJointPositions, makeJoints } from '../joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from '../joint-source';
 import { chestFeatureCount, chestFeatures, headingFromChest } from '../networks/chest-features';
+import { correctionShare } from '../networks/correction-share';
 import { FeatureWindow } from '../networks/feature-window';
 import { featureCount, frameFeatures } from '../networks/frame-features';
 import { LatestResult } from '../networks/latest-result';
@@ -79,10 +80,11 @@ class Residual implements JointSource, JointNetwork {
     return this.#inference.start(this.#input);
   }
 
-  answer({ ik, floorFromHeading }: SolvedFrame): MutableJointPositions | null {
+  answer(solved: SolvedFrame): MutableJointPositions | null {
     if (!this.#inference.output) return null;
+    const { ik, floorFromHeading } = solved;
     const answered = this.#answered;
-    this.#readResult();
+    this.#readResult(solved);
     for (const joint of estimatedJoints) {
       headingFromChest(ik.chest, this.#newest[joint], answered[joint]);
       transformPoint(floorFromHeading, add(ik.joints[joint], answered[joint], answered[joint]), answered[joint]);
@@ -96,7 +98,7 @@ class Residual implements JointSource, JointNetwork {
       this.#fillInput(solved);
       this.#inference.answerNow(this.#input);
     }
-    this.#readResult();
+    this.#readResult(solved);
     const { ik, floorFromHeading } = solved;
     // Without a result the correction fades to zero.
     const fraction = smoothingFactor(correctionHalfLife, deltaSeconds);
@@ -124,16 +126,19 @@ class Residual implements JointSource, JointNetwork {
     chestFeatures(points, ik, this.#body, input, windowSeconds.length * featureCount);
   }
 
-  #readResult(): void {
+  /** Writes the newest residual, by as much as the frame's posture allows. */
+  #readResult({ points }: SolvedFrame): void {
     const { output } = this.#inference;
     if (!output) {
       copyJoints(nothing, this.#newest);
       return;
     }
+    const { eyeHeight } = this.#body;
+    const metres = eyeHeight * correctionShare(points.head, eyeHeight);
     for (let index = 0; index < estimatedJoints.length; index++) {
       const residual = this.#newest[estimatedJoints[index]!];
       setVec3(residual, output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
-      scale(residual, this.#body.eyeHeight, residual);
+      scale(residual, metres, residual);
     }
   }
 }
