@@ -16,8 +16,8 @@ import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepo
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.32, -0.45), right: vec3(0.22, 1.32, -0.45) };
 
 /**
- * Installs iwer in place of the browser's own WebXR. The code of the emulator is loaded here and nowhere else, so that
- * real headsets never pay for it.
+ * Installs iwer in place of the browser's own WebXR, and lets Esc end its sessions. The code of the emulator is loaded
+ * here and nowhere else, so that real headsets never pay for it.
  */
 export async function installEmulator(): Promise<Emulator> {
   const { XRDevice: Device, XRReferenceSpace: ReferenceSpace, metaQuest3 } = await import('iwer');
@@ -25,7 +25,12 @@ export async function installEmulator(): Promise<Emulator> {
   const device = new Device(metaQuest3, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   markAsTracked(device);
-  return new Emulator(device, metaQuest3.controllerConfig);
+  const emulator = new Emulator(device, metaQuest3.controllerConfig);
+  window.addEventListener('keydown', ({ key, defaultPrevented }) => {
+    // While the mouse looks around, Esc frees it.
+    if (key === 'Escape' && !defaultPrevented && !document.pointerLockElement) emulator.exit();
+  });
+  return emulator;
 }
 
 /** An emulated headset, for browsers without a device. */
@@ -75,6 +80,11 @@ export class Emulator {
       const rayInGrip = invertTransform<'floor', 'floor'>(this.#gripInRay(side));
       place(controller, composeTransforms<'floor', 'floor', 'floor'>(grip, rayInGrip));
     }
+  }
+
+  /** Ends the session, if there is one. */
+  exit(): void {
+    void this.device.activeSession?.end();
   }
 
   /** Lets mouse and keys move headset and controllers again. */

@@ -186,7 +186,8 @@ function connectParts(page: Page): void {
   });
   changes.listen(() => {
     controls.show();
-    emulatorBar.show(headset.worn && headset.emulator && !page.study.run ? settings.actor : null);
+    const { actor } = settings;
+    emulatorBar.show(headset.worn && headset.emulator && !page.study.run ? { actor } : null);
   });
   captions.listen((text) => {
     controls.caption(text);
