@@ -1,7 +1,7 @@
 import { useRef } from 'preact/hooks';
 import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
 import { Button, Details, Toggle, TypedInput } from 'threepoint-ui/controls';
-import { estimatorTexts, offeredEstimators } from '../session/estimator-texts';
+import { estimatorTexts, listedEstimators } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel-actions';
 
 const methodDetails = Object.values(estimatorTexts).map(({ label, details }) => [label, details] as const);
@@ -16,7 +16,7 @@ const measureDetails = [
 const Estimators = ({ state: { estimator, unavailable, bodyComplaint }, actions }: PanelPageProps) => (
   <fieldset class="choices">
     <legend>How the body moves</legend>
-    {offeredEstimators(estimator).map((name) => {
+    {listedEstimators.map((name) => {
       const { label, text } = estimatorTexts[name];
       const reason = unavailable[name];
       const missing = name === 'device' && bodyComplaint !== null ? `Learned is used instead: ${bodyComplaint}.` : null;

@@ -3,7 +3,7 @@ import { fingertipSpanFromArmSpan, statureFromEyeHeight } from 'threepoint/core'
 import { listenToShortcuts, type Shortcuts } from 'threepoint-ui';
 import { viewNames } from '../../scene/desktop-view';
 import type { InputParts } from '../input/input-parts';
-import { offeredEstimators } from '../session/estimator-texts';
+import { listedEstimators } from '../session/estimator-texts';
 import type { MotionExport } from './motion-export';
 import { Panel } from './panel';
 import type { PanelActions } from './panel-actions';
@@ -55,10 +55,7 @@ export class DesktopControls {
     const { settings, stage, activities } = this.#parts;
     const actions = this.#actions;
     const nextView = () => viewNames[(viewNames.indexOf(stage.view.view) + 1) % viewNames.length] ?? 'front';
-    const estimators = offeredEstimators().map((name, index) => [
-      String(index + 1),
-      () => actions.chooseEstimator(name),
-    ]);
+    const estimators = listedEstimators.map((name, index) => [String(index + 1), () => actions.chooseEstimator(name)]);
     return {
       ...Object.fromEntries(estimators),
       v: () => actions.chooseView(nextView()),

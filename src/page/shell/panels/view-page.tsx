@@ -1,6 +1,6 @@
 import { Button, Group, Toggle } from 'threepoint-ui/controls';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
-import { offeredEstimators } from '../session/estimator-texts';
+import { listedEstimators } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel-actions';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
@@ -10,7 +10,7 @@ const viewTexts: Readonly<Record<ViewName, string>> = {
 };
 
 const keys: readonly (readonly [string, string])[] = [
-  [`1 – ${offeredEstimators().length}`, 'how the body moves'],
+  [`1 – ${listedEstimators.length}`, 'how the body moves'],
   ['V', 'next view'],
   ['C', 'calibrate'],
   ['R', 'centre'],
