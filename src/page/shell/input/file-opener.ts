@@ -50,13 +50,10 @@ export class FileOpener {
 
   /** Shows an avatar; a file of motion without a body is opened as motion capture. */
   async openAvatar(source: string | File): Promise<void> {
-    const { avatar, notices, mocap } = this.#parts;
+    const { avatar, mocap } = this.#parts;
     const outcome = await avatar.open(source);
     if (outcome === 'motion') await mocap.open([source]);
-    else if (outcome) {
-      const sentences = [`${avatar.name} is your avatar now.`, ...avatar.notes.map(formatSentence)];
-      notices.show('info', sentences.join(' '), 'avatar');
-    }
+    else if (outcome) this.#announceAvatar('is your avatar now.');
   }
 
   /**
@@ -64,9 +61,15 @@ export class FileOpener {
    * wrong.
    */
   async applyBones(bones: BoneMap | null): Promise<void> {
-    const { avatar, notices } = this.#parts;
+    const { avatar } = this.#parts;
     const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
-    if (await avatar.applyBones(bones)) notices.show('info', `${avatar.name} ${text}`, 'avatar');
+    if (await avatar.applyBones(bones)) this.#announceAvatar(text);
+  }
+
+  /** Shows what happened to the avatar, and what was assumed of its file. */
+  #announceAvatar(text: string): void {
+    const { avatar, notices } = this.#parts;
+    notices.show('info', [`${avatar.name} ${text}`, ...avatar.notes.map(formatSentence)].join(' '), 'avatar');
   }
 
   /** Shows the page's avatar, also after a reload. */
