@@ -73,10 +73,11 @@ function Round({ round, archery, context }: PanelProps & { readonly round: Arche
         <Button
           label={touch ? 'Shoot by touch' : 'Shoot with the mouse'}
           class="primary"
-          hidden={worn || source === 'mouse'}
+          hidden={worn}
+          disabled={source === 'mouse'}
           onClick={() => archery.chooseShooter('mouse')}
         />
-        <Button label="Watch" hidden={source === 'actor'} onClick={() => archery.chooseShooter('actor')} />
+        <Button label="Watch" disabled={source === 'actor'} onClick={() => archery.chooseShooter('actor')} />
         <Button label="New round" class={round.over ? 'primary' : ''} onClick={() => archery.restart()} />
       </div>
       {source === 'mouse' && !worn && <p class="hint">{touch ? touchHint : mouseHint}</p>}

@@ -64,7 +64,7 @@ export class PeopleMenu {
     const { play, voices } = this.#match;
     const { settings, writer } = this.#context;
     const entries: MenuEntry[] = [];
-    if (round && round.ended === null && round.seat !== null && round.phase !== 'running') {
+    if (round?.joined && round.seat !== null && round.phase !== 'running') {
       const { ready } = round;
       const label = ready ? 'Wait for me' : 'Ready';
       entries.push({ id: 'ready', label, act: () => play.connection?.setReady(!ready) });
