@@ -24,7 +24,7 @@ for (const [suite, estimators] of Object.entries(replays)) {
 
     for (const [label, name] of estimators) {
       await open(page, 'emulate&quality=low&actor=off');
-      await page.getByRole('radio', { name: label }).check();
+      await page.getByRole('radio', { name: label, exact: true }).check();
       await expect.poll(async () => (await probe(page)).estimator).toBe(name);
       await page.getByRole('tab', { name: 'Recording' }).click();
       await page

@@ -72,7 +72,7 @@ function Round({ round, archery, context }: PanelProps & { readonly round: Arche
       <div class="row">
         <Button
           label={touch ? 'Shoot by touch' : 'Shoot with the mouse'}
-          class="primary"
+          class={source === 'mouse' ? '' : 'primary'}
           hidden={worn}
           disabled={source === 'mouse'}
           onClick={() => archery.chooseShooter('mouse')}

@@ -114,9 +114,10 @@ async function start(): Promise<void> {
   const { tracker, timing } = await createTracker(renderer, clock, worlds, onProblem);
   const degradation = new TrackingDegradation();
   degradation.configure(cameras ? { cameraView: true } : null);
+  let running: HeadsetCheck | null = null;
   const bar = createEmulatorBar(parts.emulator, {
     lookAround: () => emulator?.lookAround(),
-    stop: () => emulator?.exit(),
+    stop: () => running?.stop(),
   });
   const offer = (label: string) => show(label, remarks.join(' ') || null, true);
 
@@ -125,14 +126,14 @@ async function start(): Promise<void> {
     result.hidden = true;
     canvas.hidden = false;
     fitToWindow(renderer, quality);
-    const check = new HeadsetCheck({
+    running = new HeadsetCheck({
       renderer,
       quality,
       worlds,
       tracker,
       degradation,
       timing,
-      emulated: emulator !== null,
+      emulator,
       pace,
       onStep(step, steps) {
         showStep(parts, step, steps);
@@ -150,8 +151,7 @@ async function start(): Promise<void> {
       },
     });
     try {
-      await emulator?.loadControls();
-      await check.start();
+      await running.start();
     } catch (error) {
       canvas.hidden = true;
       show('Try again', `The check could not start: ${firstLine(reasonOf(error))}.`, true);

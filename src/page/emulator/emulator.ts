@@ -10,14 +10,15 @@ import {
   type TrackedPose,
   vec3,
 } from 'threepoint/math';
-import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
+import { endSession, gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
+import { closeOnEscape } from 'threepoint-ui';
 
 /** The initial head and hands of a person of 1.70 m, who sees both hands [m]. */
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.32, -0.45), right: vec3(0.22, 1.32, -0.45) };
 
 /**
- * Installs iwer in place of the browser's own WebXR, and lets Esc end its sessions. The code of the emulator is loaded
- * here and nowhere else, so that real headsets never pay for it.
+ * Installs iwer in place of the browser's own WebXR. The code of the emulator is loaded here and nowhere else, so that
+ * real headsets never pay for it.
  */
 export async function installEmulator(): Promise<Emulator> {
   const { XRDevice: Device, XRReferenceSpace: ReferenceSpace, metaQuest3 } = await import('iwer');
@@ -25,12 +26,7 @@ export async function installEmulator(): Promise<Emulator> {
   const device = new Device(metaQuest3, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   markAsTracked(device);
-  const emulator = new Emulator(device, metaQuest3.controllerConfig);
-  window.addEventListener('keydown', ({ key, defaultPrevented }) => {
-    // While the mouse looks around, Esc frees it.
-    if (key === 'Escape' && !defaultPrevented && !document.pointerLockElement) emulator.exit();
-  });
-  return emulator;
+  return new Emulator(device, metaQuest3.controllerConfig);
 }
 
 /** An emulated headset, for browsers without a device. */
@@ -82,9 +78,12 @@ export class Emulator {
     }
   }
 
-  /** Ends the session, if there is one. */
-  exit(): void {
-    void this.device.activeSession?.end();
+  /** Lets Esc end a session of this emulator. */
+  endOnEscape(session: XRSession): void {
+    session.addEventListener(
+      'end',
+      closeOnEscape(() => void endSession(session)),
+    );
   }
 
   /** Lets mouse and keys move headset and controllers again. */

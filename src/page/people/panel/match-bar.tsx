@@ -82,7 +82,7 @@ function ReadyButton({ actions, state: { round, readyByItself } }: Omit<MatchBar
   return (
     <Button
       label={isReady && enabled ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready'}
-      class={isReady ? '' : 'primary'}
+      class={enabled && !isReady ? 'primary' : ''}
       disabled={!enabled}
       onClick={() => actions.ready(!isReady)}
     />

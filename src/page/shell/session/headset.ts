@@ -281,6 +281,7 @@ export class Headset {
     // The emulator's rates are names alone: it draws when its window does.
     const rates = new FrameRateControl(this.#emulator ? {} : xr);
     this.#session = { xr, passthrough, room, rates };
+    this.#emulator?.endOnEscape(xr);
     xr.addEventListener('end', () => {
       this.#session = null;
       this.#listener?.left();
