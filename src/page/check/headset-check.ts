@@ -17,8 +17,6 @@ import { StepSequence } from './step-sequence';
 /** The assumed frame rates of the emulated headset, and of a headset that reports none [Hz]. */
 const emulatedRateHz = 60;
 const usualRateHz = 72;
-/** The user agent of this browser; an emulator that is installed later changes the navigator's. */
-const { userAgent } = navigator;
 
 interface HeadsetCheckOptions {
   readonly renderer: WebGLRenderer;
@@ -174,7 +172,7 @@ export class HeadsetCheck {
     onReport({
       format: reportFormat,
       version: reportVersion,
-      device: { userAgent, emulated: emulator !== null, profiles: offered.profiles },
+      device: { userAgent: navigator.userAgent, emulated: emulator !== null, profiles: offered.profiles },
       session: {
         seconds: Number.isNaN(this.#startedAt) ? 0 : this.#time - this.#startedAt,
         complete: this.#sequence.over,

@@ -24,7 +24,10 @@ export async function installEmulator(): Promise<Emulator> {
   const { XRDevice: Device, XRReferenceSpace: ReferenceSpace, metaQuest3 } = await import('iwer');
   fixOffsetSpaces(ReferenceSpace.prototype);
   const device = new Device(metaQuest3, { stereoEnabled: false });
+  const { userAgent } = navigator;
   device.installRuntime({ forceInstall: true });
+  // iwer sets that of its headset. Reports and studies name the browser that ran them.
+  Object.defineProperty(navigator, 'userAgent', { value: userAgent, configurable: true });
   markAsTracked(device);
   return new Emulator(device, metaQuest3.controllerConfig);
 }
