@@ -117,7 +117,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const stageParts: StageParts = {
     ...drawingParts,
     activities,
-    mocap: new LazyMocap(drawingParts, boneMaps, prepare),
+    mocap: new LazyMocap({ ...drawingParts, activities }, boneMaps, prepare),
     userCalibration: new UserCalibration(sessionParts, stage),
     degradation: new TrackingDegradation(),
     difference: new DeviceDifference(),
