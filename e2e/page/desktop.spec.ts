@@ -169,7 +169,7 @@ test('third person, front and first person are a button away @full', async ({ pa
   await page.getByRole('tab', { name: 'View' }).click();
   for (const [label, view] of [
     ['Front', 'front'],
-    ['Own eyes', 'first-person'],
+    ['Your eyes', 'first-person'],
     ['Behind', 'third-person'],
   ] as const) {
     const choice = page.getByRole('button', { name: label });

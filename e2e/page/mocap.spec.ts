@@ -17,13 +17,13 @@ test('motion capture is shown with its truth, and methods are compared on the sa
   await expect.poll(() => errors(page, 'Left elbow')).toEqual([expect.any(Number), expect.any(Number)]);
   await expect.poll(async () => (await errors(page, 'Mean')).every((error) => error > 0 && error < 30)).toBe(true);
 
-  await card(page).getByLabel('On its right').selectOption('learned');
+  await card(page).getByLabel('Compared with').selectOption('learned');
   await expect.poll(async () => (await errors(page, 'Mean')).filter((error) => error > 0)).toHaveLength(4);
   expect((await probe(page)).recorder.seconds).toBeCloseTo(0.3, 6);
   await keepPicture(page, 'motion-capture');
 
   await card(page).getByLabel('Method').selectOption('hands-only');
-  await expect(card(page)).toContainText('Hands only: it yields no body');
+  await expect(card(page)).toContainText('Hands only: it draws no body');
 
   await page.getByRole('tab', { name: 'Body' }).click();
   await page.getByRole('radio', { name: 'Device' }).check();
@@ -31,7 +31,7 @@ test('motion capture is shown with its truth, and methods are compared on the sa
   await expect(
     card(page)
       .getByLabel('Method')
-      .getByRole('option', { name: /Learned draws/ }),
+      .getByRole('option', { name: /Learned is used/ }),
   ).toBeDisabled();
   await expect.poll(async () => (await errors(page, 'Mean')).filter((error) => error > 0)).toHaveLength(4);
 
@@ -70,7 +70,7 @@ test('a link leads to the same second, method and body beside it', async ({ page
     'emulate&quality=low&estimator=ik&mocap=clips/someone_walks.bvh&clip=1&at=0.25&beside=ik&truth=beside',
   );
   await expect(card(page).getByRole('heading', { name: 'someone_walks#1' })).toBeVisible();
-  await expect(card(page).getByLabel('On its right')).toHaveValue('ik');
+  await expect(card(page).getByLabel('Compared with')).toHaveValue('ik');
   await expect(card(page).getByLabel('Truth')).toHaveValue('beside');
   expect((await probe(page)).recorder.seconds).toBe(0.25);
   const loaded = /^someone_walks\.bvh is open: one person, \d+\.\d s at \d+ Hz in 2 pieces\./;

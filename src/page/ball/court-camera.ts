@@ -4,7 +4,7 @@ import type { MatchScenes } from '../people/match/match-camera';
 export const courtScenes: MatchScenes = {
   player: {
     'third-person': {
-      // High enough that the basket is above the head of the player behind whom the camera stands.
+      // High enough that the basket is above the head of the player, who stands before the camera.
       offset: { x: 0, y: 1.4, z: 3.5 },
       aim: { x: 0, y: 0.3, z: -2.4 },
       fovDegrees: 50,

@@ -175,7 +175,11 @@ function Choices({ labels, state, actions, correct }: OpenedProps) {
   const [first, second] = state.methods;
   const methods: readonly Choice[] = threePointNames.map((name) => ({ id: name, label: labels[name] }));
   // No file has a device's body. The option is shown if the user selected it before.
-  const device = { id: 'device', label: `${labels.device} (not in the file: ${labels.learned} draws)`, disabled: true };
+  const device = {
+    id: 'device',
+    label: `${labels.device} (not in the file; ${labels.learned} is used)`,
+    disabled: true,
+  };
   return (
     <>
       {state.clips.length > 1 && (
@@ -193,7 +197,7 @@ function Choices({ labels, state, actions, correct }: OpenedProps) {
         choose={(name) => actions.choose(name as EstimatorName)}
       />
       <Chooser
-        name="On its right"
+        name="Compared with"
         choices={[{ id: '', label: 'nothing' }, ...methods]}
         chosen={second?.estimator}
         choose={(name) => actions.compare(name === '' ? null : (name as EstimatorName))}

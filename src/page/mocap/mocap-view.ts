@@ -157,7 +157,7 @@ export class MocapView {
       this.#bones.close();
       notices.show('info', loadedText(motion, read.prepared));
       if (others.length > 0)
-        notices.show('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
+        notices.show('warning', `One motion is shown at a time. Not opened: ${others.join(', ')}.`);
     } catch (error) {
       if (!signal.aborted) this.#reportFailure(request, bones, error);
     } finally {
@@ -194,7 +194,7 @@ export class MocapView {
     });
   }
 
-  /** Where the leftmost and the rightmost of the shown bodies stand, to the right of the page's body [m]. */
+  /** The places of the leftmost and the rightmost of the shown bodies, to the right of the page's body [m]. */
   get span(): Span {
     if (!this.#isPlaying) return noSpan;
     return { from: this.#truthPlace === 'beside' ? truthAside : 0, to: this.#second ? secondAside : 0 };

@@ -72,7 +72,7 @@ export class PeopleMenu {
     // The user reads the consent text first: there is nothing else to press.
     if (voices.state.phase !== 'asked') {
       const { plainOthers } = settings;
-      const label = `Others: ${plainOthers ? 'plain' : 'as worn'}`;
+      const label = `Others: ${plainOthers ? 'mannequins' : 'avatars'}`;
       entries.push({ id: 'others', label, act: () => writer.keep({ plainOthers: !plainOthers }) });
       if (others && others.length > 0) entries.push({ id: 'players', label: 'Players', act: () => this.#list() });
       if (sharedRoom(this.#context)) entries.push({ id: 'invite', label: 'Invite', act: () => this.#invite() });

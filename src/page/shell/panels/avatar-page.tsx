@@ -93,10 +93,10 @@ function OtherAvatars({ actions }: Pick<PanelPageProps, 'actions'>) {
   };
   return (
     <section>
-      <h2>Another one</h2>
+      <h2>Another avatar</h2>
       <p class="hint">
         Any VRM (0.x or 1.0), or a humanoid as GLB or FBX (Mixamo, Ready Player Me, Avaturn, VRoid, Unreal, Rigify,
-        Character Creator): drop it on the page, or
+        Character Creator). You can also drop it on the page.
       </p>
       <div class="row">
         <FileButton

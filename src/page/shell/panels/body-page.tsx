@@ -7,7 +7,7 @@ import type { PanelPageProps } from './panel-actions';
 const methodDetails = Object.values(estimatorTexts).map(({ label, details }) => [label, details] as const);
 
 const measureDetails = [
-  ['Height', 'Gives the eye height, of which the offsets of trunk and head are ratios.'],
+  ['Height', 'Gives the eye height. The offsets of trunk and head are proportional to it.'],
   ['Arm span', 'Gives the arm length from shoulder to wrist: half the span without shoulder girdle and hands.'],
   ['Forearm', 'Places the elbow half-way between this measure and the average share of the arm.'],
 ] as const;

@@ -222,7 +222,7 @@ export class Headset {
       await this.#begin(passthrough);
     } catch (error) {
       this.#showError(
-        `${passthrough ? 'Passthrough' : 'VR'} could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`,
+        `${passthrough ? 'Passthrough' : 'VR'} could not be entered: ${firstLine(reasonOf(error))}. You stay in the desktop view.`,
       );
       this.#listener?.refused();
       return;

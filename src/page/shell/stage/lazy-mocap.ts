@@ -57,7 +57,7 @@ export class LazyMocap {
     await this.#view?.open(sources, view, requestNumber);
   }
 
-  /** Where the leftmost and the rightmost of the shown bodies stand, to the right of the page's body [m]. */
+  /** The places of the leftmost and the rightmost of the shown bodies, to the right of the page's body [m]. */
   get span(): Span {
     return this.#view?.span ?? noSpan;
   }

@@ -26,7 +26,7 @@ export interface Picture {
   readonly inSession: boolean;
   /** How far to the right of its user the body of a session is drawn [m]; 0: where the user is. */
   readonly beside: number;
-  /** Where the leftmost and the rightmost of those who are looked at stand, to the right of the body [m]. */
+  /** The places of the leftmost and the rightmost of the bodies that are looked at, to the right of the body [m]. */
   readonly span: { readonly from: number; readonly to: number };
   /** The person that a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
