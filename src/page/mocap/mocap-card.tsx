@@ -321,7 +321,7 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
       shown = { ...shown, ...part };
       isVisible = visible;
       node.hidden = !visible || Object.values(shown).every((value) => value === null);
-      render(<Card labels={labels} actions={actions} {...shown} />, node);
+      render(visible && <Card labels={labels} actions={actions} {...shown} />, node);
     },
   };
 }

@@ -2,6 +2,7 @@ import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
 import { isSkeletonMap } from 'threepoint/motion';
 import { type FileKind, fileNameOf, formatSentence, readLimited } from 'threepoint-ui';
 import { isTable, purposeOfTable } from '../../mocap/table-files';
+import { browserStorage } from '../session/preferences';
 import { AvatarStore } from '../stage/avatar-store';
 import type { StageParts } from '../stage/stage-parts';
 
@@ -23,7 +24,7 @@ export class FileOpener {
   readonly #stored: Pick<AvatarStore, 'store' | 'read' | 'forget'>;
 
   /** `stored`: the user's own avatar, from one visit to the next. */
-  constructor(parts: StageParts, stored = new AvatarStore(globalThis.caches ?? null)) {
+  constructor(parts: StageParts, stored = new AvatarStore(browserStorage('caches'))) {
     this.#parts = parts;
     this.#stored = stored;
   }

@@ -9,7 +9,7 @@ const nameHeader = 'x-file-name';
 export class AvatarStore {
   readonly #caches: CacheStorage | null;
 
-  /** `caches`: null in a page without a secure context, to which browsers grant none. */
+  /** `caches`: null if the browser grants none. */
   constructor(caches: CacheStorage | null) {
     this.#caches = caches;
   }
