@@ -42,7 +42,9 @@ export class DesktopControls {
 
   show(): void {
     const toggle = () => this.#toggle();
-    render(<Panel state={this.#state()} actions={this.#actions} open={this.#open} toggle={toggle} />, this.#region);
+    // A study hides the controls: its participant cannot close them by Esc.
+    const open = this.#open && this.#parts.study.run === null;
+    render(<Panel state={this.#state()} actions={this.#actions} open={open} toggle={toggle} />, this.#region);
   }
 
   /** Opens or closes the panel for the user, also on later visits. */
