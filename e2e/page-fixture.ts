@@ -77,7 +77,7 @@ export function distance(a: Point, b: Point): number {
 }
 
 /** The estimators in the order of their keys on the page. */
-const estimatorKeys: readonly EstimatorName[] = ['learned', 'ik', 'paper', 'hands-only'];
+const estimatorKeys: readonly EstimatorName[] = ['learned', 'ik', 'paper', 'paper-published', 'hands-only'];
 
 /** The state of a page right after loading. A page that can be reset to it is reused without a reload. */
 interface LoadedPage {
@@ -182,6 +182,7 @@ async function clearStorage(page: Page): Promise<void> {
     localStorage.clear();
     sessionStorage.clear();
     for (const { name } of await indexedDB.databases()) if (name) indexedDB.deleteDatabase(name);
+    for (const name of await caches.keys()) await caches.delete(name);
   });
 }
 

@@ -51,7 +51,7 @@ async function openStage() {
         avatar,
         inSession: true,
         beside: 0,
-        aside: 0,
+        span: { from: 0, to: 0 },
         watched: null,
         mirror: mirror ? 'always' : 'never',
         savings: defaultSavings,

@@ -3,6 +3,7 @@ import {
   expect,
   expectJointAt,
   keepPicture,
+  load,
   open,
   openAvatarFile,
   openWithHeadset,
@@ -13,15 +14,23 @@ import {
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
 
-test('a VRM from a local file replaces our body, with the hands still on the controllers', async ({ page }) => {
+test('a VRM from a local file replaces our body, also on the next visit, until ours is chosen', async ({ page }) => {
   if (!avatarFile) throw new Error('public/avatars holds no .vrm: npx tsx tools/avatars/build/main.ts');
   await openWithHeadset(page, 'estimator=ik');
   const hand = await settledJoint(page, 'leftHand');
   await openAvatarFile(page, 'another-person.vrm', readFileSync(`public/avatars/${avatarFile}`));
   await expect.poll(async () => (await probe(page)).avatar.name).toMatch(/another-person/);
   await expectJointAt(page, 'leftHand', hand);
+  await expect(page.getByText('another-person.vrm is your avatar now.')).toBeVisible();
+
+  const next = 'emulate&actor=off&quality=low&estimator=ik';
+  await load(page, next);
+  await expect.poll(async () => (await probe(page)).avatar.name).toMatch(/another-person/);
+  await page.getByRole('tab', { name: 'Avatar' }).click();
   await page.getByRole('button', { name: 'Back to the page’s avatar' }).click();
   await expect.poll(async () => (await probe(page)).avatar.name).not.toMatch(/another-person/);
+  await load(page, next);
+  await expect(page.getByRole('button', { name: 'Back to the page’s avatar', includeHidden: true })).toHaveCount(0);
 });
 
 test('a file that is no avatar is refused in a sentence, and ours stays', async ({ page, complaints }) => {

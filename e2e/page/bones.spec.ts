@@ -98,13 +98,19 @@ test('a worn file with a wrong bone is corrected, stays corrected, and goes back
   await jointsOf.toContain('neck');
   await keepPicture(page, 'bones-worn');
 
-  // Another idea is given up by Cancel, and the focus returns to where it was.
+  // Another idea is given up by Cancel or Esc, and the focus returns to where it was.
   await correct.click();
   await expect(form).toBeFocused();
   await keepPicture(page, 'bones-correcting');
   await form.getByRole('button', { name: 'Neck: part neck' }).click();
   await form.getByLabel('part neck is').selectOption('no part of the body');
   await form.getByRole('button', { name: 'Cancel' }).click();
+  await expect(correct).toBeFocused();
+
+  await correct.click();
+  await expect(form).toBeFocused();
+  await page.keyboard.press('Escape');
+  await expect(form).toHaveCount(0);
   await expect(correct).toBeFocused();
 
   await correct.click();

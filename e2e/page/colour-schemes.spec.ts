@@ -83,7 +83,7 @@ test('axe finds nothing in either colour scheme on the pages of a study @full', 
   await page.getByRole('button', { name: 'Simulate …' }).click();
   await look(page, 'simulate', found);
   await page.getByRole('dialog').getByRole('button', { name: 'Simulate' }).click();
-  await expect(page.getByRole('status')).toContainText('can be looked at now', { timeout: 60_000 });
+  await expect(page.getByRole('status')).toContainText('can be opened now', { timeout: 60_000 });
   await page.goto(`${origin}/results`);
   await choose('seen-simulated');
   await expect(page.getByRole('img').first()).toBeVisible();

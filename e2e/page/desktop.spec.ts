@@ -102,13 +102,27 @@ test('the estimators are switched live, on the same motion, without moving the h
     ['Hands only', 'hands-only'],
     ['Learned', 'learned'],
   ] as const) {
-    await page.getByRole('radio', { name: label }).check();
+    await page.getByRole('radio', { name: label, exact: true }).check();
     await expect.poll(async () => (await probe(page)).estimator).toBe(name);
     const now = await joint(page, 'rightHand');
     expect(1000 * Math.hypot(now[0] - hands[0], now[1] - hands[1], now[2] - hands[2])).toBeLessThan(1);
   }
   await page.keyboard.press('2');
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
+});
+
+test('Esc closes the controls and returns the focus to their button, and nothing else is closed', async ({ page }) => {
+  await open(page, 'quality=low&estimator=ik&panel=on');
+  const opener = page.getByRole('button', { name: 'Controls' });
+  const isOpen = (open: boolean) => expect(opener).toHaveAttribute('aria-expanded', String(open));
+  await page.getByRole('tab', { name: 'Body' }).focus();
+  await page.keyboard.press('Escape');
+  await isOpen(false);
+  await expect(opener).toBeFocused();
+  await page.keyboard.press('Escape');
+  await isOpen(false);
+  await opener.click();
+  await isOpen(true);
 });
 
 freshTest('address, title and picture name the game; Back and reload keep it @full', async ({ page }) => {
@@ -155,7 +169,7 @@ test('third person, front and first person are a button away @full', async ({ pa
   await page.getByRole('tab', { name: 'View' }).click();
   for (const [label, view] of [
     ['Front', 'front'],
-    ['Own eyes', 'first-person'],
+    ['Your eyes', 'first-person'],
     ['Behind', 'third-person'],
   ] as const) {
     const choice = page.getByRole('button', { name: label });

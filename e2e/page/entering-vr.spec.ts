@@ -58,6 +58,8 @@ freshTest('an emulated session names the actor, and is taken over by mouse and k
   await page.getByRole('button', { name: 'Let the actor move' }).click();
   await expect(bar).toContainText('The actor moves this body.');
   await expect(page.getByText('Remote Control Active')).toBeHidden();
+  await page.keyboard.press('Escape');
+  await expect.poll(async () => (await probe(page)).activity).toBe('desktop');
 });
 
 test('recentring moves the floor under the head, and the body goes on', async ({ page }) => {

@@ -121,6 +121,7 @@ test('a headset check measures the emulator’s known noise and losses and write
 
   const report = readHeadsetReport(readFileSync(file, 'utf8'));
   expect(report.device).toMatchObject({ emulated: true, profiles: ['meta-quest-touch-plus'] });
+  expect(report.device.userAgent).not.toContain('Quest');
   expect(report.session).toMatchObject({ complete: true, rateHz, rateReported: false, ratesHz: [72, 80, 90, 120] });
   expect(report.unmeasured).toEqual([]);
   expect(report.features.modes).toEqual(['inline', 'immersive-vr', 'immersive-ar']);
@@ -163,3 +164,19 @@ test('a headset check measures the emulator’s known noise and losses and write
   expect(printed).toContain(`${file}: valid`);
   expect(printed).toContain('Noise at rest');
 });
+
+for (const stop of ['Escape', 'Stop'] as const) {
+  test(`a check in the emulated headset is stopped by ${stop} and shows what it measured`, async ({ page }) => {
+    await page.goto('/check?quality=low');
+    await expect(page.getByText('It has no sensors')).toBeVisible({ timeout: 60_000 });
+    await page.getByRole('button', { name: 'Start in the emulated headset' }).click();
+    const bar = page.getByRole('region', { name: 'Emulated headset' });
+    await expect(bar).toContainText('Stand upright, look ahead');
+    await expect(bar).toContainText('Drag the arrows at a hand');
+    if (stop === 'Stop') await bar.getByRole('button', { name: stop }).click();
+    else await page.keyboard.press(stop);
+    await expect(page.getByRole('region', { name: 'Your card (incomplete)' })).toBeFocused();
+    await expect(bar).toBeHidden();
+    await expect(page.getByRole('button', { name: 'Measure again' })).toBeEnabled();
+  });
+}

@@ -17,13 +17,13 @@ test('motion capture is shown with its truth, and methods are compared on the sa
   await expect.poll(() => errors(page, 'Left elbow')).toEqual([expect.any(Number), expect.any(Number)]);
   await expect.poll(async () => (await errors(page, 'Mean')).every((error) => error > 0 && error < 30)).toBe(true);
 
-  await card(page).getByLabel('On its right').selectOption('learned');
+  await card(page).getByLabel('Compared with').selectOption('learned');
   await expect.poll(async () => (await errors(page, 'Mean')).filter((error) => error > 0)).toHaveLength(4);
   expect((await probe(page)).recorder.seconds).toBeCloseTo(0.3, 6);
   await keepPicture(page, 'motion-capture');
 
   await card(page).getByLabel('Method').selectOption('hands-only');
-  await expect(card(page)).toContainText('Hands only: it yields no body');
+  await expect(card(page)).toContainText('Hands only: it draws no body');
 
   await page.getByRole('tab', { name: 'Body' }).click();
   await page.getByRole('radio', { name: 'Device' }).check();
@@ -31,7 +31,7 @@ test('motion capture is shown with its truth, and methods are compared on the sa
   await expect(
     card(page)
       .getByLabel('Method')
-      .getByRole('option', { name: /Learned draws/ }),
+      .getByRole('option', { name: /Learned is used/ }),
   ).toBeDisabled();
   await expect.poll(async () => (await errors(page, 'Mean')).filter((error) => error > 0)).toHaveLength(4);
 
@@ -70,12 +70,12 @@ test('a link leads to the same second, method and body beside it', async ({ page
     'emulate&quality=low&estimator=ik&mocap=clips/someone_walks.bvh&clip=1&at=0.25&beside=ik&truth=beside',
   );
   await expect(card(page).getByRole('heading', { name: 'someone_walks#1' })).toBeVisible();
-  await expect(card(page).getByLabel('On its right')).toHaveValue('ik');
+  await expect(card(page).getByLabel('Compared with')).toHaveValue('ik');
   await expect(card(page).getByLabel('Truth')).toHaveValue('beside');
   expect((await probe(page)).recorder.seconds).toBe(0.25);
-  const loaded =
-    /^someone_walks\.bvh is open: one person, \d+\.\d s at \d+ Hz in 2 pieces\. .*It leaps at frame 39; cut there\./;
+  const loaded = /^someone_walks\.bvh is open: one person, \d+\.\d s at \d+ Hz in 2 pieces\./;
   await expect(page.getByRole('status').filter({ hasText: loaded })).toBeVisible();
+  await expect(card(page)).toContainText('It leaps at frame 39; cut there.');
 
   await card(page).getByLabel('Clip', { exact: true }).selectOption('someone_walks#2');
   await card(page).getByRole('button', { name: 'Pause' }).click();
@@ -85,6 +85,16 @@ test('a link leads to the same second, method and body beside it', async ({ page
   expect(link.get('mocap')).toBe('clips/someone_walks.bvh');
   expect([link.get('clip'), link.get('beside'), link.get('estimator')]).toEqual(['2', 'ik', 'ik']);
   expect(Number(link.get('at'))).toBe(0.5);
+
+  await card(page).getByRole('button', { name: 'Less' }).click();
+  await expect(card(page).getByLabel('Method')).toHaveCount(0);
+  await expect(card(page).getByLabel('Time of the clip')).toBeVisible();
+  await page.getByRole('button', { name: 'Archery' }).click();
+  await expect(card(page)).toBeHidden();
+  const input = page.getByLabel('Open motion capture').and(page.locator('input'));
+  await input.setInputFiles(filesOf(acclaim!));
+  await expect(page.getByRole('button', { name: 'Mirror' })).toHaveAttribute('aria-pressed', 'true');
+  await expect(card(page)).toBeVisible();
 });
 
 test('the pieces of another file with as many of them can be chosen @full', async ({ page }) => {
@@ -152,8 +162,8 @@ test('bones that names contradict are mapped by hand or JSON, remembered, correc
   await page.setViewportSize({ width: 390, height: 844 });
   await form.getByRole('heading').scrollIntoViewIfNeeded();
   await keepPicture(page, 'motion-bones-phone');
-  await use.click();
   await page.setViewportSize({ width: 960, height: 760 });
+  await use.click();
   await expect(heading).toBeVisible();
   await keepPicture(page, 'motion-bones-given');
 

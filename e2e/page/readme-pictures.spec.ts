@@ -38,7 +38,7 @@ test('the picture of motion capture shows our actor’s file by two methods, eac
   await choose(page, [{ name: 'actor.bvh', mimeType: 'text/plain', buffer: bytes }]);
   await card(page).getByRole('button', { name: 'Pause' }).click(patience);
   await card(page).getByLabel('Time of the clip').fill('1.5');
-  await card(page).getByLabel('On its right').selectOption('paper');
+  await card(page).getByLabel('Compared with').selectOption('paper');
   // Until its network has answered for this moment and the seconds before, a method draws inverse kinematics: then its
   // figures stay.
   let last = '';
@@ -84,7 +84,7 @@ freshTest('inverse kinematics beside the learned network as a moving picture @ni
   const { parts } = await exportMotion(recording, { format: 'bvh', estimator: 'ik' });
   await page.route('**/actor.bvh', (route) => route.fulfill({ body: parts.join('') }));
   await open(page, 'mocap=actor.bvh&estimator=learned&beside=ik&truth=off&quality=high&panel=off&view=front');
-  await expect(card(page).getByLabel('On its right')).toHaveValue('ik');
+  await expect(card(page).getByLabel('Compared with')).toHaveValue('ik');
   await rest(page);
   await card(page).getByLabel('Time of the clip').fill('0.5');
   // The camera steps back, and the picture has the two bodies alone.

@@ -24,7 +24,7 @@ for (const [suite, estimators] of Object.entries(replays)) {
 
     for (const [label, name] of estimators) {
       await open(page, 'emulate&quality=low&actor=off');
-      await page.getByRole('radio', { name: label }).check();
+      await page.getByRole('radio', { name: label, exact: true }).check();
       await expect.poll(async () => (await probe(page)).estimator).toBe(name);
       await page.getByRole('tab', { name: 'Recording' }).click();
       await page
@@ -110,11 +110,11 @@ test('a recording replaying on the range leaves the bow to mouse and built-in ar
   const mode = async () => (await probe(page)).recorder.mode;
   for (const choice of [shoot!, watch!]) {
     await expect.poll(mode).toBe('replaying');
-    await expect(shoot!).toBeVisible();
-    await expect(watch!).toBeVisible();
+    await expect(shoot!).toBeEnabled();
+    await expect(watch!).toBeEnabled();
     await choice.click();
     expect(await mode()).toBe('idle');
-    await expect(choice).toBeHidden();
+    await expect(choice).toBeDisabled();
     await page.getByRole('tab', { name: 'Recording' }).click();
     await page.getByRole('button', { name: 'Replay', exact: true }).click();
   }

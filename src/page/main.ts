@@ -104,7 +104,7 @@ async function start(): Promise<void> {
   if (switches.avatar) {
     const address = switches.avatar;
     void avatar.open(address).then((outcome) => (outcome === 'motion' ? page.mocap.open([address]) : undefined));
-  }
+  } else if (!switches.study) void controls.openStoredAvatar();
   const enter = (passthrough: boolean) => {
     if (passthrough !== settings.passthrough) writer.keep({ passthrough });
     void headset.enter(passthrough);

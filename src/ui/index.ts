@@ -3,6 +3,7 @@ export type { CalibrationStep } from './calibration-dialog';
 export { CalibrationDialog, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
 export { type CalibrationGuide, createCalibrationGuide } from './calibration-guide';
 export { createEnterButton, type EnterButton } from './enter-button';
+export { closeOnEscape, useEscape } from './escape';
 export type { FrameReport } from './frame-times-overlay';
 export { differenceLines, FrameTimes, milliseconds, missedFrames } from './frame-times-overlay';
 export { linkTo, type RoomLink, RoomLinkCard, showInvitation } from './invitation';

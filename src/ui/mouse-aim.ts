@@ -33,8 +33,11 @@ export function createMouseAim(canvas: HTMLCanvasElement) {
       if (button <= 0) aim.pressed = false;
     });
   }
-  window.addEventListener('keydown', ({ key }) => {
-    if (key === 'Escape') aim.cancelled = true;
+  window.addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape') return;
+    aim.cancelled = true;
+    // What else Esc would close stays open.
+    if (enabled && aim.pressed) event.preventDefault();
   });
   canvas.addEventListener('contextmenu', (event) => {
     if (enabled) event.preventDefault();

@@ -38,6 +38,8 @@ export function createSteeredArcher(body: ArcherBody) {
   let fullDraw = 0;
   /** Share of the full draw at the release, or when the arrow was cancelled. */
   let share = 0;
+  /** How far the string of a cancelled arrow was eased in the last frame, 0 to 1: no slow frame may let go before. */
+  let eased = 0;
   /** The posture from which the hands return. */
   let left: Posture | null = null;
 
@@ -73,9 +75,10 @@ export function createSteeredArcher(body: ArcherBody) {
         enter('drawing', time);
       } else if (phase === 'drawing') {
         share = done(drawSeconds);
+        eased = 0;
         if (cancelled) enter('lowering', time);
         else if (!pressed) enter('loosing', time);
-      } else if (phase === 'lowering' && over(returnSeconds)) {
+      } else if (phase === 'lowering' && eased === 1) {
         left = nocking;
         enter('returning', time);
       } else if (phase === 'loosing' && over(looseSeconds)) enter('following', time);
@@ -94,7 +97,8 @@ export function createSteeredArcher(body: ArcherBody) {
         case 'drawing':
           return postures.inputFor(bent, time, 1, 0);
         case 'lowering':
-          return postures.inputFor(mixPostures(nocking, full, share * (1 - done(returnSeconds))), time, 1, 0);
+          eased = done(returnSeconds);
+          return postures.inputFor(mixPostures(nocking, full, share * (1 - eased)), time, 1, 0);
         case 'loosing':
           return postures.inputFor(bent, time, 1 - done(looseSeconds), 0);
         case 'following':

@@ -1,4 +1,4 @@
-import { finiteWithin, integerWithin, type RoomMessage, roomMessageReader, seconds } from 'threepoint-rooms/room';
+import { finiteWithin, integerWithin, roomMessageReader, seconds } from 'threepoint-rooms/room';
 import * as v from 'valibot';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
 import { type BallAction, type BallEvent, refusals } from './ball-state';
@@ -8,7 +8,6 @@ export interface SentBallGame {
   readonly snapshot: PackedBall;
   readonly event: BallEvent;
 }
-export type BallRoomMessage = RoomMessage<SentBallGame>;
 
 /** The name of the ball game, by which pages request a room. */
 export const ballKind = 'ball';

@@ -66,19 +66,20 @@ function Round({ round, archery, context }: PanelProps & { readonly round: Arche
         <span class="arrows">{`${round.arrowsLeft} ${round.arrowsLeft === 1 ? 'arrow' : 'arrows'}`}</span>
         <span class="time">{`${Math.ceil(round.secondsLeft)} s`}</span>
       </div>
-      <p class="waiting" role="status" hidden={round.waiting === null}>
-        {round.waiting}
-      </p>
       <div class="row">
         <Button
           label={touch ? 'Shoot by touch' : 'Shoot with the mouse'}
-          class="primary"
-          hidden={worn || source === 'mouse'}
+          class={source === 'mouse' ? '' : 'primary'}
+          hidden={worn}
+          disabled={source === 'mouse'}
           onClick={() => archery.chooseShooter('mouse')}
         />
-        <Button label="Watch" hidden={source === 'actor'} onClick={() => archery.chooseShooter('actor')} />
+        <Button label="Watch" disabled={source === 'actor'} onClick={() => archery.chooseShooter('actor')} />
         <Button label="New round" class={round.over ? 'primary' : ''} onClick={() => archery.restart()} />
       </div>
+      <p class="waiting" role="status" hidden={round.waiting === null}>
+        {round.waiting}
+      </p>
       {source === 'mouse' && !worn && <p class="hint">{touch ? touchHint : mouseHint}</p>}
       <Rules archery={archery} context={context} />
     </div>

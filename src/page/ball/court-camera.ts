@@ -4,8 +4,9 @@ import type { MatchScenes } from '../people/match/match-camera';
 export const courtScenes: MatchScenes = {
   player: {
     'third-person': {
-      offset: { x: -0.8, y: 1.05, z: 3.5 },
-      aim: { x: 0.3, y: 0.12, z: -2.4 },
+      // High enough that the basket is above the head of the player, who stands before the camera.
+      offset: { x: 0, y: 1.4, z: 3.5 },
+      aim: { x: 0, y: 0.3, z: -2.4 },
       fovDegrees: 50,
       headroom: 0.5,
     },

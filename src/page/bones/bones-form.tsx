@@ -151,7 +151,7 @@ export function BonesForm({ skeleton, apply, cancel }: BonesActions & { readonly
     if (names.length === 0) apply(choices.bones);
   }
   const reason = skeleton.isShown
-    ? 'Does a limb move as it should not? Then a bone is mapped to the wrong part of the body.'
+    ? 'If a limb moves wrongly, a bone is mapped to the wrong part of the body.'
     : `The ${skeleton.joints.length} bones of ${skeleton.name} could not be matched to a humanoid.`;
   return (
     <section ref={section} class="bones" tabIndex={-1} aria-label="Bones of this file">

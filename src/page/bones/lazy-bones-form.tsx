@@ -1,6 +1,7 @@
 import type { RefObject } from 'preact';
 import { useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { firstLine, reasonOf } from 'threepoint/core';
+import { useEscape } from 'threepoint-ui';
 import { Complaint } from 'threepoint-ui/controls';
 import type { BonesActions, BonesForm } from './bones-form';
 import type { SkeletonToMap } from './skeleton-to-map';
@@ -18,6 +19,7 @@ export function LazyBonesForm({ skeleton, opener, ...actions }: LazyBonesFormPro
   const [complaint, setComplaint] = useState<string | null>(null);
   const region = useRef<HTMLDivElement>(null);
   const isWaiting = skeleton !== null;
+  useEscape(isWaiting, actions.cancel);
   const hadFocus = region.current?.contains(document.activeElement) ?? false;
   useLayoutEffect(() => {
     if (hadFocus && !isWaiting) opener.current?.focus();

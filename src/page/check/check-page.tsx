@@ -5,7 +5,8 @@ import { BodyTracker } from 'threepoint/three';
 import { describeXrSupport } from 'threepoint/webxr';
 import { createEnterButton, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
 import { Complaint } from 'threepoint-ui/controls';
-import { installEmulator } from '../emulator/emulator';
+import { type Emulator, installEmulator } from '../emulator/emulator';
+import { createEmulatorBar } from '../emulator/emulator-bar';
 import { affordableQuality, createRenderer, fitToWindow } from '../scene/renderer';
 import { FrameTiming } from '../shell/session/frame-timing';
 import { createNetworkLoader } from '../shell/session/network-loading';
@@ -19,6 +20,12 @@ import { ResultCard } from './result-card';
 /** The estimators whose networks are loaded before the session; the last one draws first. */
 const preloaded = ['paper', 'learned'] as const;
 
+const camerasText = 'As the address asks, hands outside the view of a headset’s cameras are lost.';
+/** What a visitor without a headset can expect. */
+const emulatedText =
+  'You can try the check in an emulated headset, which mouse and keys move. It has no sensors: noise, lost hands and ' +
+  'latency are not those of a device, and frame times are those of this computer.';
+
 const regions = () => ({
   enter: pageElement('enter', HTMLElement),
   progress: pageElement('progress', HTMLElement),
@@ -26,6 +33,7 @@ const regions = () => ({
   steps: pageElement('steps', HTMLElement),
   result: pageElement('result', HTMLElement),
   canvas: pageElement('stage', HTMLCanvasElement),
+  emulator: pageElement('emulator', HTMLElement),
 });
 
 /** Lists the steps by title, each once, and marks the one that runs. */
@@ -46,14 +54,11 @@ function showStep(
 /** Installs the emulator if the address asks for it or there is no headset. Returns the reason as a sentence. */
 async function prepareHeadset(
   emulate: boolean,
-): Promise<{ readonly emulated: boolean; readonly sentence: string | null }> {
+): Promise<{ readonly emulator: Emulator | null; readonly sentence: string | null }> {
   const support = await describeXrSupport();
-  if (support.kind === 'device' && !emulate) return { emulated: false, sentence: null };
-  await installEmulator();
-  const reason = emulate
-    ? 'The address asks for the emulated headset'
-    : `${support.sentence} An emulated headset takes its place`;
-  return { emulated: true, sentence: `${reason}: its figures are no measurement of a device.` };
+  if (support.kind === 'device' && !emulate) return { emulator: null, sentence: null };
+  const reason = emulate ? 'The address asks for the emulated headset.' : support.sentence;
+  return { emulator: await installEmulator(), sentence: `${reason} ${emulatedText}` };
 }
 
 /** Creates the tracker of the user's body and loads its networks. */
@@ -98,17 +103,22 @@ async function start(): Promise<void> {
   const show = (label: string, sentence: string | null, enabled: boolean) =>
     button.show({ label, passthroughLabel: null, sentence, enabled });
   show('Loading …', null, false);
-  const [{ emulated, sentence }, mannequin] = await Promise.all([
+  const [{ emulator, sentence }, mannequin] = await Promise.all([
     prepareHeadset(emulate),
     fetchBuiltInAvatar('mannequin'),
   ]);
-  const remarks: string[] = [...switches.complaints, ...(sentence ? [sentence] : [])];
+  const remarks = [...switches.complaints, ...(cameras ? [camerasText] : []), ...(sentence ? [sentence] : [])];
   const onProblem = (problem: string) => void remarks.push(problem);
   const clock = createPageClock(() => performance.now());
   const worlds = await CheckWorlds.create({ renderer, quality, clock, mannequin, onProblem });
   const { tracker, timing } = await createTracker(renderer, clock, worlds, onProblem);
   const degradation = new TrackingDegradation();
   degradation.configure(cameras ? { cameraView: true } : null);
+  let running: HeadsetCheck | null = null;
+  const bar = createEmulatorBar(parts.emulator, {
+    lookAround: () => emulator?.lookAround(),
+    stop: () => running?.stop(),
+  });
   const offer = (label: string) => show(label, remarks.join(' ') || null, true);
 
   async function run(): Promise<void> {
@@ -116,17 +126,21 @@ async function start(): Promise<void> {
     result.hidden = true;
     canvas.hidden = false;
     fitToWindow(renderer, quality);
-    const check = new HeadsetCheck({
+    running = new HeadsetCheck({
       renderer,
       quality,
       worlds,
       tracker,
       degradation,
       timing,
-      emulated,
+      emulator,
       pace,
-      onStep: (step, steps) => showStep(parts, step, steps),
+      onStep(step, steps) {
+        showStep(parts, step, steps);
+        if (emulator) bar.show({ actor: false, task: step.sentence });
+      },
       onReport(report) {
+        bar.show(null);
         progress.hidden = true;
         canvas.hidden = true;
         // Each check has its own card.
@@ -137,14 +151,14 @@ async function start(): Promise<void> {
       },
     });
     try {
-      await check.start();
+      await running.start();
     } catch (error) {
       canvas.hidden = true;
       show('Try again', `The check could not start: ${firstLine(reasonOf(error))}.`, true);
     }
   }
 
-  offer(emulated ? 'Start in the emulated headset' : 'Start in the headset');
+  offer(emulator ? 'Start in the emulated headset' : 'Start in the headset');
 }
 
 start().catch((error: unknown) => {

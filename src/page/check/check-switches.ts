@@ -9,12 +9,16 @@ interface CheckSwitches extends Pick<Switches, 'emulate' | 'cameras' | 'quality'
 }
 
 const quickest = 0.05;
+/** The page's own switches that the check uses. It ignores the others, and their values. */
+const used: readonly string[] = ['emulate', 'cameras', 'quality'] satisfies (keyof Switches)[];
 
-/** Reads the query of an address: the page's own switches, and the pace. A wrong value is reported and ignored. */
+/** Reads the query of an address. A wrong value is reported and ignored. */
 export function readCheckSwitches(query: string): CheckSwitches {
-  const { switches, complaints } = readSwitches(query);
+  const asked = new URLSearchParams(query);
+  const own = new URLSearchParams([...asked].filter(([key]) => used.includes(key)));
+  const { switches, complaints } = readSwitches(`${own}`);
   const { emulate, cameras, quality } = switches;
-  const given = new URLSearchParams(query).get('pace') ?? '1';
+  const given = asked.get('pace') ?? '1';
   const pace = Number(given);
   if (pace >= quickest && pace <= 1) return { emulate, cameras, quality, pace, complaints };
   const complaint = `The address has pace=${given}: pace takes a number from ${quickest} to 1.`;

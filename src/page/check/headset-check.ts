@@ -1,7 +1,8 @@
 import type { WebGLRenderer } from 'three';
 import type { TrackingDegradation } from 'threepoint/core';
 import type { BodyTracker } from 'threepoint/three';
-import type { TrackedSession } from 'threepoint/webxr';
+import { endSession, type TrackedSession } from 'threepoint/webxr';
+import type { Emulator } from '../emulator/emulator';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
 import { home } from '../shell/activity-registry';
 import type { FrameTiming } from '../shell/session/frame-timing';
@@ -25,7 +26,8 @@ interface HeadsetCheckOptions {
   readonly tracker: BodyTracker;
   readonly degradation: TrackingDegradation;
   readonly timing: FrameTiming;
-  readonly emulated: boolean;
+  /** The emulated headset; null: a real one is worn. */
+  readonly emulator: Emulator | null;
   /** The factor of all durations. */
   readonly pace: number;
   /** A step begins; `steps` may have grown. */
@@ -51,6 +53,7 @@ export class HeadsetCheck {
   readonly #sequence: StepSequence;
   readonly #caption = new StepCaption();
   readonly #camera = createHeadsetCamera();
+  #xr: XRSession | null = null;
   /** The tracking of the session; null before its first frame. */
   #tracking: TrackedSession | null = null;
   #views = 0;
@@ -74,17 +77,25 @@ export class HeadsetCheck {
 
   /** Enters the session and starts the check. Call it in a click. Rejects with a sentence. */
   async start(): Promise<void> {
-    const { renderer, quality, emulated } = this.#options;
+    const { renderer, quality, emulator } = this.#options;
+    await emulator?.loadControls();
     const xr = await enterSession(renderer);
+    this.#xr = xr;
+    emulator?.endOnEscape(xr);
     const offered = new OfferedFeatures(xr);
     xr.addEventListener('end', () => void this.#finish(xr, offered));
-    if (emulated) reduceEmulatedResolution(renderer, quality);
+    if (emulator) reduceEmulatedResolution(renderer, quality);
     this.#options.worlds.scene.add(this.#caption.object);
     renderer.setAnimationLoop((timestampMs, frame) => {
       if (!frame) return;
       this.#frame(xr, timestampMs, frame);
       offered.observe();
     });
+  }
+
+  /** Ends the check early. */
+  stop(): void {
+    if (this.#xr) void endSession(this.#xr);
   }
 
   #frame(xr: XRSession, timestampMs: number, frame: XRFrame): void {
@@ -119,7 +130,7 @@ export class HeadsetCheck {
       this.#measurements.add({ time, tracked, pose, kinds }, this.#sequence.measured);
     }
     this.#sequence.advance(time);
-    if (this.#sequence.over) void xr.end();
+    if (this.#sequence.over) this.stop();
   }
 
   #beginStep(step: CheckStep): void {
@@ -146,13 +157,14 @@ export class HeadsetCheck {
 
   /** The rate at which the device wants frames. The emulated ones follow the window, whatever the emulator reports. */
   #rateOf({ frameRate }: XRSession): Pick<HeadsetReport['session'], 'rateHz' | 'rateReported'> {
-    const assumed = this.#options.emulated ? emulatedRateHz : usualRateHz;
-    const rateReported = frameRate !== undefined && !this.#options.emulated;
+    const { emulator } = this.#options;
+    const assumed = emulator ? emulatedRateHz : usualRateHz;
+    const rateReported = frameRate !== undefined && !emulator;
     return { rateHz: rateReported ? frameRate : assumed, rateReported };
   }
 
   async #finish(xr: XRSession, offered: OfferedFeatures): Promise<void> {
-    const { renderer, emulated, onReport } = this.#options;
+    const { renderer, emulator, onReport } = this.#options;
     renderer.setAnimationLoop(null);
     synthesis?.cancel();
     this.#caption.dispose();
@@ -160,7 +172,7 @@ export class HeadsetCheck {
     onReport({
       format: reportFormat,
       version: reportVersion,
-      device: { userAgent: navigator.userAgent, emulated, profiles: offered.profiles },
+      device: { userAgent: navigator.userAgent, emulated: emulator !== null, profiles: offered.profiles },
       session: {
         seconds: Number.isNaN(this.#startedAt) ? 0 : this.#time - this.#startedAt,
         complete: this.#sequence.over,

@@ -90,7 +90,7 @@ function noiseSection({ noise, unmeasured }: HeadsetReport): ReportSection {
         return { label: trackers[tracker], value: notMeasured(moved ? 'you moved' : reason) };
       }),
     ],
-    note: 'Standard deviation by axis, from second differences. Sway is the person and not counted; tremor is counted.',
+    note: 'Standard deviation by axis, from second differences. Sway of the body is not counted, tremor is.',
   };
 }
 
@@ -110,7 +110,7 @@ function lossSection({ losses }: HeadsetReport): ReportSection {
       })),
       { label: 'Hands', reason: 'no hand was seen' },
     ),
-    note: 'A loss lasts until the hand is seen again, so it includes the time that the person hid it.',
+    note: 'A loss lasts until the hand is seen again, so it includes the time for which it was hidden.',
   };
 }
 
@@ -129,9 +129,9 @@ function frameSection({ frameTimes }: HeadsetReport): ReportSection {
         label: `${titleOf(world)}, ${estimator}${drawnBy === estimator ? '' : ` (drawn by ${drawnBy})`}`,
         value: counted(`${times(work)}; ${missed} late`, work.frames),
       })),
-      { label: 'Frames', reason: 'the check ended before' },
+      { label: 'Frames', reason: 'the check ended too early' },
     ),
-    note: 'Work of the page’s thread in a frame. The graphics device works on after it: late frames count both.',
+    note: 'How long the page’s thread works on a frame. The graphics device goes on after it: late frames include both.',
   };
 }
 
@@ -158,6 +158,6 @@ function bodySection({ bodyTracking }: HeadsetReport): ReportSection {
           value: counted(`${distances[joint].toFixed(1)} cm`, frames),
         }))
       : [{ label: 'Not compared', value: complaint ?? 'the device reports no body' }],
-    note: distances ? 'Mean distance of the learned body. Neither of the two is the truth.' : '',
+    note: distances ? 'Mean distance from the learned body. Neither is the ground truth.' : '',
   };
 }

@@ -9,34 +9,49 @@ const lookText =
   'The mouse looks, Left Shift with W, A, S or D walks, a click presses the right trigger, Esc frees the mouse.';
 
 interface EmulatorBarActions {
-  /** Lets the actor, or mouse and keys, move the emulated headset. */
-  setActor(on: boolean): void;
+  /** Lets the actor, or mouse and keys, move the emulated headset; absent: there is no actor. */
+  setActor?(on: boolean): void;
   /** Lets the mouse turn the head, and keys walk, until Esc. */
   lookAround(): void;
+  /** Ends the session; absent: another part of the page does. */
+  stop?(): void;
+}
+
+interface EmulatorBarState {
+  /** Whether the actor moves the body. */
+  readonly actor: boolean;
+  /** What the user is asked to do; absent: nothing. */
+  readonly task?: string;
 }
 
 /** Creates the bar of an emulated session: what moves the body, and how to do it by mouse and keys. */
-export function createEmulatorBar(region: HTMLElement, actions: EmulatorBarActions) {
-  let actor: boolean | null = null;
+export function createEmulatorBar(region: HTMLElement, { setActor, lookAround, stop }: EmulatorBarActions) {
+  let shown: EmulatorBarState | null = null;
   function draw(): void {
-    region.hidden = actor === null;
+    region.hidden = shown === null;
     const locked = document.pointerLockElement !== null;
-    const isUsers = actor === false && !locked;
+    const isUsers = shown?.actor === false && !locked;
     render(
       <>
-        <p role="status">{actor ? actorText : locked ? lookText : handsText}</p>
-        <Button label="Take over" class="primary" hidden={!actor} onClick={() => actions.setActor(false)} />
-        <Button label="Look and walk" hidden={!isUsers || isTouchFirst()} onClick={actions.lookAround} />
-        <Button label="Let the actor move" hidden={!isUsers} onClick={() => actions.setActor(true)} />
+        <div>
+          <p hidden={!shown?.task}>
+            <b>{shown?.task}</b>
+          </p>
+          <p role="status">{shown?.actor ? actorText : locked ? lookText : handsText}</p>
+        </div>
+        <Button label="Take over" class="primary" hidden={!shown?.actor} onClick={() => setActor?.(false)} />
+        <Button label="Look and walk" hidden={!isUsers || isTouchFirst()} onClick={lookAround} />
+        <Button label="Let the actor move" hidden={!isUsers || !setActor} onClick={() => setActor?.(true)} />
+        <Button label="Stop" hidden={!stop} onClick={() => stop?.()} />
       </>,
       region,
     );
   }
   document.addEventListener('pointerlockchange', draw);
   return {
-    /** `state`: whether the actor moves the body; null: there is no emulated session. */
-    show(state: boolean | null): void {
-      actor = state;
+    /** null: there is no emulated session. */
+    show(state: EmulatorBarState | null): void {
+      shown = state;
       draw();
     },
   };

@@ -10,7 +10,8 @@ import {
   type TrackedPose,
   vec3,
 } from 'threepoint/math';
-import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
+import { endSession, gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
+import { closeOnEscape } from 'threepoint-ui';
 
 /** The initial head and hands of a person of 1.70 m, who sees both hands [m]. */
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.32, -0.45), right: vec3(0.22, 1.32, -0.45) };
@@ -23,7 +24,10 @@ export async function installEmulator(): Promise<Emulator> {
   const { XRDevice: Device, XRReferenceSpace: ReferenceSpace, metaQuest3 } = await import('iwer');
   fixOffsetSpaces(ReferenceSpace.prototype);
   const device = new Device(metaQuest3, { stereoEnabled: false });
+  const { userAgent } = navigator;
   device.installRuntime({ forceInstall: true });
+  // iwer sets that of its headset. Reports and studies name the browser that ran them.
+  Object.defineProperty(navigator, 'userAgent', { value: userAgent, configurable: true });
   markAsTracked(device);
   return new Emulator(device, metaQuest3.controllerConfig);
 }
@@ -75,6 +79,14 @@ export class Emulator {
       const rayInGrip = invertTransform<'floor', 'floor'>(this.#gripInRay(side));
       place(controller, composeTransforms<'floor', 'floor', 'floor'>(grip, rayInGrip));
     }
+  }
+
+  /** Lets Esc end a session of this emulator. */
+  endOnEscape(session: XRSession): void {
+    session.addEventListener(
+      'end',
+      closeOnEscape(() => void endSession(session)),
+    );
   }
 
   /** Lets mouse and keys move headset and controllers again. */

@@ -51,7 +51,7 @@ export async function* meanErrors(
   const sums = makeJointErrors();
   const errors = makeJointErrors();
   yield* estimateRecording(recording, estimator, ({ time }, { body }) => {
-    if (!body) throw new Error('it yields no body');
+    if (!body) throw new Error('it draws no body');
     meter.measure(body, truth.at(time), errors);
     for (let i = 0; i < sums.length; i++) sums[i]! += errors[i]!;
   });

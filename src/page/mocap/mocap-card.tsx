@@ -1,5 +1,5 @@
-import { render } from 'preact';
-import { useRef } from 'preact/hooks';
+import { type RefObject, render } from 'preact';
+import { useRef, useState } from 'preact/hooks';
 import {
   type BoneMap,
   type EstimatedJoint,
@@ -8,7 +8,8 @@ import {
   threePointNames,
 } from 'threepoint/core';
 import { doubtOfErrors, type WorkProgress } from 'threepoint/motion';
-import { Button, type Choice, Chooser, ReplayTimeline, StatusLine } from 'threepoint-ui/controls';
+import { formatSentence, useEscape } from 'threepoint-ui';
+import { Button, type Choice, Chooser, ReplayTimeline, Sentences, StatusLine } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../bones/lazy-bones-form';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';
 import type { ClipMean } from './clip-means';
@@ -38,6 +39,8 @@ interface CardState {
   readonly canCorrectBones: boolean;
   /** Signs that the file is wrong, one sentence each. */
   readonly doubts: readonly string[];
+  /** What was assumed of the file, one sentence each. */
+  readonly notes: readonly string[];
   /** The errors of the body, and of the second body if there is one. */
   readonly methods: readonly MethodErrors[];
 }
@@ -151,9 +154,7 @@ function Unmeasured({ labels, methods }: ErrorsProps) {
 function Doubts({ methods, doubts }: Pick<CardState, 'methods' | 'doubts'>) {
   const means = methods.map(({ mean }) => mean).filter((mean): mean is JointErrors => mean instanceof Float64Array);
   const ofErrors = means.length < methods.length ? null : doubtOfErrors(means.map(meanOf));
-  const sentences = [...doubts, ...(ofErrors === null ? [] : [ofErrors])].map(
-    (sentence) => `${sentence[0]!.toUpperCase()}${sentence.slice(1)}.`,
-  );
+  const sentences = [...doubts, ...(ofErrors === null ? [] : [ofErrors])].map(formatSentence);
   return (
     <p class="complaint" role="status" hidden={sentences.length === 0}>
       {sentences.join(' ')}
@@ -162,17 +163,23 @@ function Doubts({ methods, doubts }: Pick<CardState, 'methods' | 'doubts'>) {
 }
 
 interface OpenedProps {
+  /** The button that opens the form for the bones. */
+  readonly correct: RefObject<HTMLButtonElement | null>;
   readonly labels: Labels;
   readonly actions: CardActions;
   readonly state: CardState;
 }
 
 /** Lets the user choose the clip, the methods and the place of the truth. */
-function Choices({ labels, state, actions }: OpenedProps) {
+function Choices({ labels, state, actions, correct }: OpenedProps) {
   const [first, second] = state.methods;
   const methods: readonly Choice[] = threePointNames.map((name) => ({ id: name, label: labels[name] }));
   // No file has a device's body. The option is shown if the user selected it before.
-  const device = { id: 'device', label: `${labels.device} (not in the file: ${labels.learned} draws)`, disabled: true };
+  const device = {
+    id: 'device',
+    label: `${labels.device} (not in the file; ${labels.learned} is used)`,
+    disabled: true,
+  };
   return (
     <>
       {state.clips.length > 1 && (
@@ -190,7 +197,7 @@ function Choices({ labels, state, actions }: OpenedProps) {
         choose={(name) => actions.choose(name as EstimatorName)}
       />
       <Chooser
-        name="On its right"
+        name="Compared with"
         choices={[{ id: '', label: 'nothing' }, ...methods]}
         chosen={second?.estimator}
         choose={(name) => actions.compare(name === '' ? null : (name as EstimatorName))}
@@ -211,6 +218,9 @@ function Choices({ labels, state, actions }: OpenedProps) {
         }
         onClick={() => actions.copyLink()}
       />
+      <button type="button" ref={correct} hidden={!state.canCorrectBones} onClick={() => actions.correctBones()}>
+        Correct the bones…
+      </button>
     </>
   );
 }
@@ -226,6 +236,48 @@ const Reading = ({ reading, actions }: Pick<CardProps, 'reading' | 'actions'>) =
     <Button label="Cancel" onClick={() => actions.cancel()} />
   </div>
 );
+
+/** Windows in which the open card would cover the body. */
+const isSmall = (): boolean => matchMedia('(max-width: 900px), (max-height: 560px)').matches;
+
+/** The opened motion: a line that plays it, and what the line unfolds. */
+function Opened({ labels, state, actions, correct }: OpenedProps) {
+  const [unfolded, unfold] = useState(() => !isSmall());
+  useEscape(unfolded, () => unfold(false));
+  return (
+    <>
+      <div class="line">
+        <ReplayTimeline
+          name="Time of the clip in seconds"
+          paused={state.paused}
+          seconds={state.seconds}
+          duration={state.duration}
+          setPaused={(on) => actions.setPaused(on)}
+          seek={(seconds) => actions.seek(seconds)}
+        />
+        <Button
+          label={unfolded ? 'Less' : 'More'}
+          class="quiet"
+          aria-expanded={unfolded}
+          onClick={() => unfold(!unfolded)}
+        />
+        <Button label="×" aria-label="Close" class="quiet icon" onClick={() => actions.close()} />
+      </div>
+      {unfolded && (
+        <>
+          <h2>{state.clips[state.clip]}</h2>
+          <ErrorTable labels={labels} methods={state.methods} />
+          <Doubts methods={state.methods} doubts={state.doubts} />
+          <Unmeasured labels={labels} methods={state.methods} />
+          <div class="choices">
+            <Choices labels={labels} state={state} actions={actions} correct={correct} />
+          </div>
+          {state.notes.length > 0 && <Sentences class="hint" sentences={state.notes.map(formatSentence)} />}
+        </>
+      )}
+    </>
+  );
+}
 
 interface CardProps {
   readonly labels: Labels;
@@ -247,27 +299,7 @@ function Card({ labels, actions, reading, skeleton, state }: CardProps) {
       <LazyBonesForm skeleton={skeleton} opener={correct} apply={actions.applyBones} cancel={actions.cancelBones} />
       {state && (
         <div class="opened" hidden={skeleton !== null}>
-          <div class="title">
-            <h2>{state.clips[state.clip]}</h2>
-            <Button label="Close" class="quiet" onClick={() => actions.close()} />
-          </div>
-          <ReplayTimeline
-            name="Time of the clip in seconds"
-            paused={state.paused}
-            seconds={state.seconds}
-            duration={state.duration}
-            setPaused={(on) => actions.setPaused(on)}
-            seek={(seconds) => actions.seek(seconds)}
-          />
-          <ErrorTable labels={labels} methods={state.methods} />
-          <Doubts methods={state.methods} doubts={state.doubts} />
-          <Unmeasured labels={labels} methods={state.methods} />
-          <div class="choices">
-            <Choices labels={labels} state={state} actions={actions} />
-            <button type="button" ref={correct} hidden={!state.canCorrectBones} onClick={() => actions.correctBones()}>
-              Correct the bones…
-            </button>
-          </div>
+          <Opened labels={labels} state={state} actions={actions} correct={correct} />
         </div>
       )}
     </>
@@ -281,13 +313,15 @@ export function createMocapCard(labels: Labels, actions: CardActions) {
   node.ariaLabel = 'Motion capture';
   node.hidden = true;
   let shown: Pick<CardProps, 'reading' | 'skeleton' | 'state'> = { reading: null, skeleton: null, state: null };
+  let isVisible = true;
   return {
     node,
-    /** Updates these parts of the card. */
-    show(part: Partial<typeof shown>): void {
+    /** Updates these parts of the card. `visible`: the place that the card belongs to is shown. */
+    show({ visible = isVisible, ...part }: Partial<typeof shown> & { readonly visible?: boolean }): void {
       shown = { ...shown, ...part };
-      node.hidden = Object.values(shown).every((value) => value === null);
-      render(<Card labels={labels} actions={actions} {...shown} />, node);
+      isVisible = visible;
+      node.hidden = !visible || Object.values(shown).every((value) => value === null);
+      render(visible && <Card labels={labels} actions={actions} {...shown} />, node);
     },
   };
 }

@@ -11,7 +11,7 @@ import {
 } from 'threepoint/core';
 import { mocapRateHz, type PreparedMocap, type WorkProgress } from 'threepoint/motion';
 import type { Avatar } from 'threepoint/three';
-import { fileNameOf, formatSentence, type Notices } from 'threepoint-ui';
+import { fileNameOf, type Notices } from 'threepoint-ui';
 import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
@@ -79,6 +79,14 @@ function loadedText(name: string, { clips, rateHz }: PreparedMocap): string {
 const addressesOf = (sources: readonly MocapFile[]): readonly string[] | null =>
   sources.every((source) => typeof source === 'string') ? sources : null;
 
+/** The places of the leftmost and the rightmost body, to the right of the page's body [m]. */
+export interface Span {
+  readonly from: number;
+  readonly to: number;
+}
+
+/** The span of the page's body alone. */
+const noSpan: Span = { from: 0, to: 0 };
 /** The distance of the second body, and of the ground truth beside it, to the right of the body [m]. */
 const secondAside = 1.15;
 const truthAside = -0.85;
@@ -90,6 +98,7 @@ export class MocapView {
   readonly #card: MocapCard;
   readonly #bones: MotionBones;
   #opened: OpenClip | null = null;
+  #visible = true;
   #second: SecondBody | null = null;
   #truthPlace: TruthPlace = 'inside';
   #reading = new AbortController();
@@ -146,9 +155,9 @@ export class MocapView {
       this.#show({ name: motion, sources, ...read }, request);
       if (bones && read.map.hash !== null) boneMaps.store(read.map.hash, bones);
       this.#bones.close();
-      notices.show('info', [loadedText(motion, read.prepared), ...read.prepared.notes.map(formatSentence)].join(' '));
+      notices.show('info', loadedText(motion, read.prepared));
       if (others.length > 0)
-        notices.show('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
+        notices.show('warning', `One motion is shown at a time. Not opened: ${others.join(', ')}.`);
     } catch (error) {
       if (!signal.aborted) this.#reportFailure(request, bones, error);
     } finally {
@@ -185,11 +194,20 @@ export class MocapView {
     });
   }
 
-  /** The distance of the middle of all shown bodies to the right of the page's body [m]. */
-  get aside(): number {
-    if (!this.#opened || this.#options.replay.mode !== 'replaying') return 0;
-    const [left, right] = [this.#truthPlace === 'beside' ? truthAside : 0, this.#second ? secondAside : 0];
-    return (left + right) / 2;
+  /** The places of the leftmost and the rightmost of the shown bodies, to the right of the page's body [m]. */
+  get span(): Span {
+    if (!this.#isPlaying) return noSpan;
+    return { from: this.#truthPlace === 'beside' ? truthAside : 0, to: this.#second ? secondAside : 0 };
+  }
+
+  /** Shows the opened motion, or hides it in a game. */
+  setVisible(visible: boolean): void {
+    this.#visible = visible;
+    this.#card.show({ visible });
+  }
+
+  get #isPlaying(): boolean {
+    return this.#opened !== null && this.#visible && this.#options.replay.mode === 'replaying';
   }
 
   /** Updates the second body, the ghosts and the errors to a frame and the body that the page's method draws. */
@@ -198,7 +216,7 @@ export class MocapView {
     if (this.#opened && replay.recording !== this.#opened.recording) this.close();
     const opened = this.#opened;
     if (!opened) return;
-    if (replay.mode !== 'replaying') {
+    if (!this.#isPlaying) {
       this.#hide();
       return;
     }
@@ -233,6 +251,7 @@ export class MocapView {
         shareable: addressesOf(opened.sources) !== null,
         canCorrectBones: opened.sources.every((source) => !isMap(source)),
         doubts: opened.prepared.doubts,
+        notes: opened.prepared.notes,
         methods: methods.map((estimator, i) => ({
           estimator,
           now: this.#drawn[i] ? this.#errors[i as 0] : null,
@@ -297,7 +316,7 @@ export class MocapView {
     const recording = recordingOf(clip);
     const { replay, networks, onJump } = this.#options;
     // If this throws, the shown motion stays.
-    replay.load(`${clip.name}.json`, recording, requestNumber);
+    replay.load(clip.name, recording, requestNumber);
     replay.replay();
     onJump();
     this.close();

@@ -102,6 +102,8 @@ export class DesktopView {
   readonly #before = new Vector3();
   /** How far above the pelvis the camera aims [m], for a head that is larger than people's. */
   #rise = 0;
+  /** The distance between the outermost of several bodies [m]. */
+  #distance = 0;
   /** The view that the user or the address chose in this scene; null: none. */
   #chosen: ViewName | null = null;
   #scene = studioScene;
@@ -170,11 +172,15 @@ export class DesktopView {
     return { origin: { ...origin }, direction: { ...direction } };
   }
 
-  /** Sets the height of the body [m]: the view also fits bodies taller than people. */
-  setHeight(height: number): void {
+  /**
+   * Sets the height of the body and the distance between the outermost of several bodies [m]: the view also fits bodies
+   * taller than people, and all that stand in a row.
+   */
+  setBodies(height: number, distance: number): void {
     const rise = Math.max(0, height - tallest) / 2;
-    if (rise === this.#rise) return;
+    if (rise === this.#rise && distance === this.#distance) return;
     this.#rise = rise;
+    this.#distance = distance;
     this.#project();
   }
 
@@ -262,31 +268,44 @@ export class DesktopView {
       const widest = (freeWidth * Math.tan((fovDegrees * Math.PI) / 360)) / (height * sides);
       return { zoom: Math.min(1, widest), shift: (right - left) / 2, rise: (bottom - top) / 2 };
     }
-    const { head, feet } = this.#standing(view);
-    const zoom = Math.min(1, (bodyShare * freeHeight) / (head - feet), freeWidth / (bodyWidth * (head - feet)));
+    const { head, feet, leftmost, rightmost } = this.#standing(view);
+    const zoom = Math.min(1, (bodyShare * freeHeight) / (head - feet), freeWidth / (rightmost - leftmost));
     const margin = ((1 - bodyShare) / 2) * freeHeight;
     const least = bottom + margin - height / 2 - zoom * feet;
     const most = height / 2 - top - margin - zoom * head;
     // What the picture shows beside the body may lie under a column at the left.
-    const leftEdge = window.innerWidth / 2 - (zoom * bodyWidth * (head - feet)) / 2;
+    const leftEdge = window.innerWidth / 2 + zoom * leftmost;
+    const middle = (zoom * (leftmost + rightmost)) / 2;
     return {
       zoom,
-      shift: Math.max((right - left) / 2, Math.min(right / 2, leftEdge - left - margin)),
+      shift: Math.max(middle + (right - left) / 2, Math.min(middle + right / 2, leftEdge - left - margin)),
       rise: Math.min(most, Math.max(least, (bottom - top) / 2)),
     };
   }
 
-  /** Returns how far head and feet of a standing body are above the window's middle at the start [CSS pixels]. */
-  #standing(view: Exclude<ViewName, 'first-person'>): { readonly head: number; readonly feet: number } {
+  /**
+   * Returns how far head and feet of standing bodies are above the window's middle, and their sides to the right of it,
+   * at the start [CSS pixels].
+   */
+  #standing(view: Exclude<ViewName, 'first-person'>) {
     const { offset, aim, fovDegrees, headroom = 0 } = this.#scene[view];
     const start = new PerspectiveCamera(fovDegrees, this.camera.aspect, 0.05, 90);
     start.position.copy(offset);
     start.lookAt(aim.x, aim.y, aim.z);
     start.updateMatrixWorld();
-    const heightAt = (y: number) => (new Vector3(0, y, 0).project(start).y * window.innerHeight) / 2;
+    const bodies = [-this.#distance / 2, this.#distance / 2].map((x) => {
+      const top = new Vector3(x, tallest - pelvisHeight + this.#rise + headroom, 0).project(start);
+      const bottom = new Vector3(x, -pelvisHeight - this.#rise, 0).project(start);
+      const [head, feet] = [(top.y * window.innerHeight) / 2, (bottom.y * window.innerHeight) / 2];
+      const middle = (bottom.x * window.innerWidth) / 2;
+      const half = (bodyWidth * (head - feet)) / 2;
+      return { head, feet, leftmost: middle - half, rightmost: middle + half };
+    });
     return {
-      head: heightAt(tallest - pelvisHeight + this.#rise + headroom),
-      feet: heightAt(-pelvisHeight - this.#rise),
+      head: Math.max(...bodies.map(({ head }) => head)),
+      feet: Math.min(...bodies.map(({ feet }) => feet)),
+      leftmost: Math.min(...bodies.map(({ leftmost }) => leftmost)),
+      rightmost: Math.max(...bodies.map(({ rightmost }) => rightmost)),
     };
   }
 

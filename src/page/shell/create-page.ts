@@ -117,7 +117,7 @@ function createParts(context: PageContext, loading: PageLoading) {
   const stageParts: StageParts = {
     ...drawingParts,
     activities,
-    mocap: new LazyMocap(drawingParts, boneMaps, prepare),
+    mocap: new LazyMocap({ ...drawingParts, activities }, boneMaps, prepare),
     userCalibration: new UserCalibration(sessionParts, stage),
     degradation: new TrackingDegradation(),
     difference: new DeviceDifference(),
@@ -186,7 +186,8 @@ function connectParts(page: Page): void {
   });
   changes.listen(() => {
     controls.show();
-    emulatorBar.show(headset.worn && headset.emulator && !page.study.run ? settings.actor : null);
+    const { actor } = settings;
+    emulatorBar.show(headset.worn && headset.emulator && !page.study.run ? { actor } : null);
   });
   captions.listen((text) => {
     controls.caption(text);

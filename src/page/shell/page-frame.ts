@@ -169,7 +169,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     return {
       time,
       beside: besideUser ? besideDistance : 0,
-      aside: mocap.aside,
+      span: mocap.span,
       frame,
       avatar: tracker.avatar,
       inSession: headset.worn,

@@ -62,11 +62,11 @@ export class Lights {
     scene.add(this.#contact.object, this.#key, this.#key.target, this.#rim, this.#front, this.#fill);
   }
 
-  /** Moves light and shadow to a person who has hips, drawn so far aside, along X [m]. */
+  /** Moves light and shadow to a person, drawn so far aside, along X [m]. Without hips the light stays. */
   follow(joints: FollowedJoints, aside: number): void {
     const { hips } = joints;
-    if (!hips) return;
     this.#contact.follow(joints, aside);
+    if (!hips) return;
     this.#stand.x = hips.x + aside;
     this.#stand.z = hips.z;
     if (this.#lighting) this.#aimKey(this.#lighting);

@@ -117,7 +117,7 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality) {
     },
     /** Sets the light to a device's estimate of its room; null: to the lighting of the surroundings. */
     setEstimatedLight: (light: EstimatedLight | null): void => lights.setEstimate(light),
-    /** Moves shadow and light to a person who has hips, drawn so far aside, along X [m]. */
+    /** Moves shadow and light to a person, drawn so far aside, along X [m]. Without hips the light stays. */
     follow: (joints: FollowedJoints, aside = 0): void => lights.follow(joints, aside),
     openWindows,
     /** Shows the studio on this layer only. */

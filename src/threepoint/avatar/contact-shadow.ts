@@ -50,8 +50,8 @@ function createDiscTexture(): DataTexture {
   return texture;
 }
 
-/** The joints that a shadow lies under, floor frame [m]. */
-type ShadowJoints = Readonly<Partial<Record<'hips' | 'head' | 'leftFoot' | 'rightFoot', Vec3>>>;
+/** The joints that a shadow lies under, floor frame [m]; none: head and hands without a body. */
+type ShadowJoints = Readonly<Partial<Record<'hips' | 'leftFoot' | 'rightFoot', Vec3>>>;
 
 /** A soft disc under a body and a smaller one under each foot, in one draw call: cheaper than a shadow map. */
 export class ContactShadow {
@@ -80,8 +80,8 @@ export class ContactShadow {
   }
 
   /** Lies under the joints of a body that is drawn so far aside, along X [m]. */
-  follow({ hips, head, leftFoot, rightFoot }: ShadowJoints, aside = 0): void {
-    this.#lay(0, underBody, hips ?? head, aside, 1);
+  follow({ hips, leftFoot, rightFoot }: ShadowJoints, aside = 0): void {
+    this.#lay(0, underBody, hips, aside, 1);
     this.#lay(1, underFoot, leftFoot, aside, leftFoot ? 1 - smoothstep(standing, lifted, leftFoot.y) : 0);
     this.#lay(2, underFoot, rightFoot, aside, rightFoot ? 1 - smoothstep(standing, lifted, rightFoot.y) : 0);
     const { position, color } = this.object.geometry.attributes;

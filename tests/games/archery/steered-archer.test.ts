@@ -4,18 +4,19 @@ import { archeryRules, delayed } from '../../../src/games/archery/rules';
 import { createSteeredArcher, type Steering } from '../../../src/games/archery/steered-archer';
 import { createMatch } from '../../../src/games/match';
 
-/** A person with a mouse: what is held when, at 60 frames a second. */
+/** A person with a mouse: what is held when. */
 function play(
   bowSide: 'left' | 'right',
   seconds: number,
   steer: (time: number, target: number) => Omit<Steering, 'target'>,
+  rateHz = 60,
 ) {
   const match = createMatch(archeryRules, archeryRules.start(['mouse'], 3), { delayed });
   const archer = createSteeredArcher({ bowSide, eyeHeight: 1.6 });
   const gestures = new ArcheryGestures(() => ({ ...defaultArcheryGestureSettings, bowSide }));
   const cues: string[] = [];
-  for (let i = 0; i < seconds * 60 && match.state.phase !== 'over'; i++) {
-    const time = i / 60;
+  for (let i = 0; i < seconds * rateHz && match.state.phase !== 'over'; i++) {
+    const time = i / rateHz;
     const at = match.state.arrows.length % 4;
     const target = match.state.targets[at];
     if (!target) throw new Error('no target');
@@ -47,5 +48,12 @@ describe.each(['left', 'right'] as const)('with the bow in the %s hand', (bowSid
     expect(cues).toContain('nocked');
     expect(cues).toContain('cancelled');
     expect(cues).not.toContain('too-soon');
+  });
+
+  test.each([1.5, 2, 5])('an arrow put back is still there at %d frames a second', (rateHz) => {
+    const steer = (time: number) => ({ pressed: time < 6, cancelled: time > 4 });
+    const { state, cues } = play(bowSide, 9, steer, rateHz);
+    expect(cues).toContain('nocked');
+    expect(state.arrowsLeft).toBe(5);
   });
 });

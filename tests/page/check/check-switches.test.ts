@@ -27,6 +27,10 @@ test.each(['0', '1.5', '-1', 'fast', '', '0.01'])('a pace of “%s” is reporte
   expect(complaints).toEqual([`The address has pace=${pace}: pace takes a number from 0.05 to 1.`]);
 });
 
+test('values of switches that the check does not use are not reported', () => {
+  expect(readCheckSwitches('?play=chess&estimator=best&room=A%20B').complaints).toEqual([]);
+});
+
 test('an unknown quality is reported and ignored', () => {
   expect(readCheckSwitches('?quality=best')).toMatchObject({
     complaints: ['The address has quality=best, which is not a valid value: quality takes high or low.'],

@@ -77,6 +77,6 @@ test('parts that were not measured give the reason and what to do', () => {
     { label: 'Left hand', value: 'Not measured: it was not seen. Measure again.' },
     { label: 'Right hand', value: 'Not measured: too few steady frames (70 frames). Measure again.' },
     { label: 'Hands', value: 'Not measured: no hand was seen. Measure again.' },
-    { label: 'Frames', value: 'Not measured: the check ended before. Measure again.' },
+    { label: 'Frames', value: 'Not measured: the check ended too early. Measure again.' },
   ]);
 });

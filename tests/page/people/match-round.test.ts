@@ -13,7 +13,7 @@ test('a panel describes the connection only while it stands, and waits for nobod
   const { room } = play;
   if (!frame || !room) throw new Error('Robin is not in the room');
   const described = (status: ConnectionStatus) => {
-    const { connection, waiting, ended } = matchRound(ballGame, {
+    const { connection, waiting, joined, ended } = matchRound(ballGame, {
       play: { status, room: { ...room, responseTime: 0.008 } },
       frame,
       readyByItself: false,
@@ -25,15 +25,16 @@ test('a panel describes the connection only while it stands, and waits for nobod
         seats: { voiceOf: () => ({ voice: 'none', link: 'none', silenced: false, hidden: false }) },
       },
     });
-    return { connection, waiting, ended };
+    return { connection, waiting, joined, ended };
   };
   const status = { phase: 'joined', attempt: 0, retryIn: null, reason: null } as const;
   expect(described(status)).toEqual({
     connection: 'Connection good, 8 ms',
     waiting: 'Waiting for a basket holder.',
+    joined: true,
     ended: null,
   });
-  const nothing = { connection: null, waiting: null, ended: null };
+  const nothing = { connection: null, waiting: null, joined: false, ended: null };
   expect(described({ ...status, phase: 'reconnecting', attempt: 1, retryIn: 2 })).toEqual(nothing);
   expect(described({ ...status, phase: 'ended', reason: 'left' })).toEqual({ ...nothing, ended: 'You left the room.' });
 });

@@ -21,7 +21,7 @@ function page(draw: () => void = () => undefined): PageFrame {
     stage: { look: () => undefined, draw },
     tracker: { avatar: null },
     gazeTargets: new GazeTargets(),
-    mocap: { aside: 0 },
+    mocap: { span: { from: 0, to: 0 } },
   });
   return new PageFrame(parts, fake<Controls>({ point: () => undefined }), fake<PassthroughHost>({}));
 }
@@ -77,7 +77,7 @@ function moved({ calm = false, run = null as object | null, inputSource = 'actor
     degradation: { apply: (frame: TrackingFrame) => frame },
     difference: { observe: () => undefined },
     body: { calibration: defaultCalibration },
-    mocap: { aside: 0, frame: () => undefined },
+    mocap: { span: { from: 0, to: 0 }, frame: () => undefined },
   });
   const controls = fake<Controls>({ point: () => undefined, observe: () => undefined });
   const frame = new PageFrame(parts, controls, fake<PassthroughHost>({}));

@@ -36,13 +36,13 @@ test('a shadow lies under body and feet, and fades under a foot that is lifted',
   expect(discsOf(shadow)).toHaveLength(2);
 });
 
-test('a shadow lies under a head without a body, and aside where the body is drawn', () => {
+test('a shadow lies aside where the body is drawn, and nowhere without a body', () => {
   const shadow = new ContactShadow();
-  shadow.follow({ head: vec3(1, 1.6, 2) });
-  expect(discsOf(shadow).map(({ at }) => at)).toEqual([[1, 2]]);
   shadow.follow({ hips, leftFoot }, 1.2);
   expect(discsOf(shadow).map(({ at }) => at)).toEqual([
     [1.3, -0.2],
     [1.2, -0.3],
   ]);
+  shadow.follow({});
+  expect(discsOf(shadow)).toEqual([]);
 });

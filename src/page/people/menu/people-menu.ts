@@ -64,7 +64,7 @@ export class PeopleMenu {
     const { play, voices } = this.#match;
     const { settings, writer } = this.#context;
     const entries: MenuEntry[] = [];
-    if (round && round.ended === null && round.seat !== null && round.phase !== 'running') {
+    if (round?.joined && round.seat !== null && round.phase !== 'running') {
       const { ready } = round;
       const label = ready ? 'Wait for me' : 'Ready';
       entries.push({ id: 'ready', label, act: () => play.connection?.setReady(!ready) });
@@ -72,7 +72,7 @@ export class PeopleMenu {
     // The user reads the consent text first: there is nothing else to press.
     if (voices.state.phase !== 'asked') {
       const { plainOthers } = settings;
-      const label = `Others: ${plainOthers ? 'plain' : 'as worn'}`;
+      const label = `Others: ${plainOthers ? 'mannequins' : 'avatars'}`;
       entries.push({ id: 'others', label, act: () => writer.keep({ plainOthers: !plainOthers }) });
       if (others && others.length > 0) entries.push({ id: 'players', label: 'Players', act: () => this.#list() });
       if (sharedRoom(this.#context)) entries.push({ id: 'invite', label: 'Invite', act: () => this.#invite() });

@@ -42,7 +42,7 @@ const Players = ({ game, actions, state: { round, bots, sound, name, defaultName
       <Toggle
         label={game.option.label}
         on={round?.option ?? false}
-        disabled={round?.seat === null || isOut(round)}
+        disabled={round?.seat === null || !round?.joined}
         set={actions.setOption}
       />
     )}
@@ -74,40 +74,41 @@ function Score({ round }: Pick<MatchBarState, 'round'>) {
   );
 }
 
-/** The buttons of the current state. If this page is no longer in the room, only the way back is enabled. */
-function Buttons({ actions, state: { round, readyByItself, mouse } }: Omit<MatchBarProps, 'game'>) {
-  const touch = isTouchFirst();
-  const out = isOut(round);
-  const isSeated = round !== null && round.seat !== null;
+/** The button that starts a match, or that returns to the room after this page has left it. */
+function ReadyButton({ actions, state: { round, readyByItself } }: Omit<MatchBarProps, 'game'>) {
+  if (isOut(round)) return <Button label="Rejoin" class="primary" onClick={actions.rejoin} />;
   const isReady = round?.ready ?? false;
+  const enabled = round?.joined && round.seat !== null && round.phase !== 'running' && !readyByItself;
+  return (
+    <Button
+      label={isReady && enabled ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready'}
+      class={enabled && !isReady ? 'primary' : ''}
+      disabled={!enabled}
+      onClick={() => actions.ready(!isReady)}
+    />
+  );
+}
+
+/** The buttons of the current state. What cannot be pressed now keeps its place, so that no other takes it. */
+function Buttons({ actions, state }: Omit<MatchBarProps, 'game'>) {
+  const { round, mouse } = state;
+  const touch = isTouchFirst();
+  const isSeated = round !== null && round.seat !== null;
   const hint = round?.hints[touch ? 'touch' : 'mouse'] ?? null;
   return (
     <>
-      <div class="row">
-        <Button label="Rejoin" class="primary" hidden={!out} onClick={actions.rejoin} />
-        <Button
-          label={isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready'}
-          class={isReady || out ? '' : 'primary'}
-          hidden={!isSeated || round.phase === 'running' || readyByItself}
-          disabled={out}
-          onClick={() => actions.ready(!isReady)}
-        />
-        <Button
-          label={touch ? 'Play by touch' : 'Play with the mouse'}
-          class={out ? '' : 'primary'}
-          hidden={!isSeated || mouse !== false || hint === null}
-          disabled={out}
-          onClick={() => actions.steer(true)}
-        />
-        <Button
-          label="Let the computer play"
-          hidden={!isSeated || mouse !== true}
-          disabled={out}
-          onClick={() => actions.steer(false)}
-        />
-        <Button label="Watch" hidden={!isSeated} disabled={out} onClick={() => actions.sit(null)} />
+      <div class="row halves">
+        <ReadyButton actions={actions} state={state} />
+        <Button label="Watch" disabled={!isSeated || !round.joined} onClick={() => actions.sit(null)} />
       </div>
-      {isSeated && mouse === true && !out && <p class="hint">{hint}</p>}
+      <Button
+        label={mouse ? 'Let the computer play' : touch ? 'Play by touch' : 'Play with the mouse'}
+        class={mouse || isOut(round) ? '' : 'primary'}
+        hidden={!isSeated || mouse === null || (hint === null && !mouse)}
+        disabled={isOut(round)}
+        onClick={() => actions.steer(!mouse)}
+      />
+      {isSeated && mouse === true && !isOut(round) && <p class="hint">{hint}</p>}
     </>
   );
 }
@@ -124,7 +125,7 @@ function Seats({ actions, state: { round, following } }: Omit<MatchBarProps, 'ga
             <Button
               key={seat}
               label={`Play as ${role.toLowerCase()}`}
-              disabled={isOut(round)}
+              disabled={!round?.joined}
               onClick={() => actions.sit(seat)}
             />
           ))}
@@ -183,10 +184,10 @@ export function MatchBar({ game, actions, state }: MatchBarProps) {
     <div class="round">
       <Score round={round} />
       <p class="hint">{whereText(state)}</p>
+      <Buttons actions={actions} state={state} />
       <p class="waiting" role="status" hidden={sentence === null}>
         {sentence}
       </p>
-      <Buttons actions={actions} state={state} />
       <Company game={game} actions={actions} state={state} />
       <Seats actions={actions} state={state} />
       {round && <VoicesBar state={round.voices} room={round} actions={actions.voices} />}

@@ -22,6 +22,8 @@ export interface MatchRound {
   readonly waiting: string | null;
   /** The quality of the connection in words; null: it is lost, or the room is in this page. */
   readonly connection: string | null;
+  /** This page is in the room and connected to it: the room receives what the user presses. */
+  readonly joined: boolean;
   /** Why this page is no longer in the room; null: it is in the room. */
   readonly ended: string | null;
   readonly rules: readonly string[];
@@ -71,6 +73,7 @@ export function matchRound<Game extends HostedGame>(
     paused,
     waiting: joined ? waitingSentence(game, standing) : null,
     connection: delay === null ? null : connectionText(delay),
+    joined,
     ended: ended ? (bannerText(play.status) ?? 'The connection has ended.') : null,
     rules: game.rules(state),
     hints: { mouse: hint(false), touch: hint(true) },

@@ -2,10 +2,14 @@ import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
 import { isSkeletonMap } from 'threepoint/motion';
 import { type FileKind, fileNameOf, formatSentence, readLimited } from 'threepoint-ui';
 import { isTable, purposeOfTable } from '../../mocap/table-files';
+import { browserStorage } from '../session/preferences';
+import { AvatarStore } from '../stage/avatar-store';
 import type { StageParts } from '../stage/stage-parts';
 
 /** Twice the size of the longest recording that the recorder stores. */
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
+
+const notStored = 'This browser cannot store it: open it again on your next visit.';
 
 const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
 /** A map of a skeleton is a page of text, and so is the first line of a table [bytes]. */
@@ -17,9 +21,12 @@ const mayBeMocap = ({ name }: File): boolean => /\.(fbx|glb)$/i.test(name);
 /** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
 export class FileOpener {
   readonly #parts: StageParts;
+  readonly #stored: Pick<AvatarStore, 'store' | 'read' | 'forget'>;
 
-  constructor(parts: StageParts) {
+  /** `stored`: the user's own avatar, from one visit to the next. */
+  constructor(parts: StageParts, stored = new AvatarStore(browserStorage('caches'))) {
     this.#parts = parts;
+    this.#stored = stored;
   }
 
   /**
@@ -50,13 +57,10 @@ export class FileOpener {
 
   /** Shows an avatar; a file of motion without a body is opened as motion capture. */
   async openAvatar(source: string | File): Promise<void> {
-    const { avatar, notices, mocap } = this.#parts;
+    const { avatar, mocap } = this.#parts;
     const outcome = await avatar.open(source);
     if (outcome === 'motion') await mocap.open([source]);
-    else if (outcome) {
-      const sentences = [`${avatar.name} is your avatar now.`, ...avatar.notes.map(formatSentence)];
-      notices.show('info', sentences.join(' '), 'avatar');
-    }
+    else if (outcome) await this.#keepAvatar('is your avatar now.');
   }
 
   /**
@@ -64,13 +68,29 @@ export class FileOpener {
    * wrong.
    */
   async applyBones(bones: BoneMap | null): Promise<void> {
-    const { avatar, notices } = this.#parts;
+    const { avatar } = this.#parts;
     const text = avatar.waiting?.isShown ? 'has the new bones now.' : 'is your avatar now.';
-    if (await avatar.applyBones(bones)) notices.show('info', `${avatar.name} ${text}`, 'avatar');
+    if (await avatar.applyBones(bones)) await this.#keepAvatar(text);
+  }
+
+  /** Shows the avatar of the last visit, if the user opened a file then. */
+  async openStoredAvatar(): Promise<void> {
+    const file = await this.#stored.read();
+    if (file) await this.#parts.avatar.open(file);
+  }
+
+  /** Stores the avatar for later visits. Shows what happened to it, and what was assumed of its file. */
+  async #keepAvatar(text: string): Promise<void> {
+    const { avatar, notices } = this.#parts;
+    const { ownFile, name, notes } = avatar;
+    const isStored = ownFile === null || (await this.#stored.store(ownFile));
+    const sentences = [`${name} ${text}`, ...notes.map(formatSentence), ...(isStored ? [] : [notStored])];
+    notices.show('info', sentences.join(' '), 'avatar');
   }
 
   /** Shows the page's avatar, also after a reload. */
   showBuiltInAvatar(): void {
+    void this.#stored.forget();
     const address = new URL(location.href);
     address.searchParams.delete('avatar');
     history.replaceState(null, '', address);

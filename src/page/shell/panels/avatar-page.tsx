@@ -6,28 +6,36 @@ import { LazyBonesForm } from '../../bones/lazy-bones-form';
 import { ownColours } from '../session/settings';
 import type { PanelPageProps } from './panel-actions';
 
-interface SwatchProps {
-  readonly label: string;
-  readonly color: string;
-  readonly chosen: boolean;
+interface SwatchesProps<Name extends string> {
+  readonly title: string;
+  readonly looks: readonly { readonly name: Name; readonly label: string; readonly color: string }[];
+  readonly chosen: string | undefined;
   readonly disabled: boolean;
-  readonly choose: () => void;
+  readonly choose: (name: Name) => void;
 }
 
-const Swatch = ({ label, color, chosen, disabled, choose }: SwatchProps) => (
-  <Button
-    label=""
-    class="swatch"
-    aria-label={label}
-    title={label}
-    aria-pressed={chosen}
-    disabled={disabled}
-    style={{ '--swatch': color }}
-    onClick={choose}
-  />
+/** Lets the user choose a colour, and names the chosen one. */
+const Swatches = <Name extends string>({ title, looks, chosen, disabled, choose }: SwatchesProps<Name>) => (
+  <Group label={title} class="swatches">
+    <p class="hint">{`${title}: ${looks.find(({ name }) => name === chosen)?.label ?? ownLook.label}`}</p>
+    {looks.map(({ name, label, color }) => (
+      <Button
+        label=""
+        class="swatch"
+        aria-label={`${title}: ${label}`}
+        title={label}
+        aria-pressed={name === chosen}
+        disabled={disabled}
+        style={{ '--swatch': color }}
+        onClick={() => choose(name)}
+      />
+    ))}
+  </Group>
 );
 
-const ownLook = { name: ownColours, label: 'Its own', color: 'linear-gradient(135deg, #1d9a86 50%, #2c3350 50%)' };
+const ownLook = { name: ownColours, label: 'its own', color: 'linear-gradient(135deg, #1d9a86 50%, #2c3350 50%)' };
+const clothes = [ownLook, ...palettes.map((palette) => ({ ...palette, label: palette.label.toLowerCase() }))];
+const skins = skinTones.map((name) => ({ name, label: name, color: skinColors[name] }));
 
 /** Shows the current avatar: its name, its colours if it is built in, and the bones of a file. */
 function ShownAvatar({ state, actions }: PanelPageProps) {
@@ -45,28 +53,20 @@ function ShownAvatar({ state, actions }: PanelPageProps) {
             <Button label={label} aria-pressed={name === builtInBody} onClick={() => actions.chooseBuiltInBody(name)} />
           ))}
         </Group>
-        <Group label="Colours" class="swatches">
-          {[ownLook, ...palettes].map(({ name, label, color }) => (
-            <Swatch
-              label={label}
-              color={color}
-              chosen={name === worn}
-              disabled={worn === null}
-              choose={() => actions.choosePalette(name)}
-            />
-          ))}
-        </Group>
-        <Group label="Skin" class="swatches">
-          {skinTones.map((tone) => (
-            <Swatch
-              label={`Skin: ${tone}`}
-              color={skinColors[tone]}
-              chosen={tone === state.skinTone}
-              disabled={builtInBody === null || builtInBody === defaultAvatar}
-              choose={() => actions.chooseSkinTone(tone)}
-            />
-          ))}
-        </Group>
+        <Swatches
+          title="Clothes"
+          looks={clothes}
+          chosen={worn ?? undefined}
+          disabled={worn === null}
+          choose={(name) => actions.choosePalette(name)}
+        />
+        <Swatches
+          title="Skin"
+          looks={skins}
+          chosen={state.skinTone}
+          disabled={builtInBody === null || builtInBody === defaultAvatar}
+          choose={(tone) => actions.chooseSkinTone(tone)}
+        />
         {state.builtInAvatarOffered && (
           <Button label="Back to the page’s avatar" onClick={() => actions.showBuiltInAvatar()} />
         )}
@@ -93,10 +93,10 @@ function OtherAvatars({ actions }: Pick<PanelPageProps, 'actions'>) {
   };
   return (
     <section>
-      <h2>Another one</h2>
+      <h2>Another avatar</h2>
       <p class="hint">
         Any VRM (0.x or 1.0), or a humanoid as GLB or FBX (Mixamo, Ready Player Me, Avaturn, VRoid, Unreal, Rigify,
-        Character Creator): drop it on the page, or
+        Character Creator). You can also drop it on the page.
       </p>
       <div class="row">
         <FileButton

@@ -1,13 +1,13 @@
 import { useRef } from 'preact/hooks';
 import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
 import { Button, Details, Toggle, TypedInput } from 'threepoint-ui/controls';
-import { estimatorTexts, offeredEstimators } from '../session/estimator-texts';
+import { estimatorTexts, listedEstimators } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel-actions';
 
 const methodDetails = Object.values(estimatorTexts).map(({ label, details }) => [label, details] as const);
 
 const measureDetails = [
-  ['Height', 'Gives the eye height, of which the offsets of trunk and head are ratios.'],
+  ['Height', 'Gives the eye height. The offsets of trunk and head are proportional to it.'],
   ['Arm span', 'Gives the arm length from shoulder to wrist: half the span without shoulder girdle and hands.'],
   ['Forearm', 'Places the elbow half-way between this measure and the average share of the arm.'],
 ] as const;
@@ -16,7 +16,7 @@ const measureDetails = [
 const Estimators = ({ state: { estimator, unavailable, bodyComplaint }, actions }: PanelPageProps) => (
   <fieldset class="choices">
     <legend>How the body moves</legend>
-    {offeredEstimators(estimator).map((name) => {
+    {listedEstimators.map((name) => {
       const { label, text } = estimatorTexts[name];
       const reason = unavailable[name];
       const missing = name === 'device' && bodyComplaint !== null ? `Learned is used instead: ${bodyComplaint}.` : null;

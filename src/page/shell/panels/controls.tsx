@@ -110,6 +110,11 @@ export class Controls {
     this.#inHeadset.point(frame);
   }
 
+  /** Shows the avatar of the last visit, if the user opened a file then. */
+  openStoredAvatar(): Promise<void> {
+    return this.#files.openStoredAvatar();
+  }
+
   /** Replays a file of this device or of an address. `requestNumber`: its number among the recorder's requests. */
   openRecording(source: string | File, requestNumber: number): Promise<void> {
     return this.#files.openRecording(source, requestNumber);

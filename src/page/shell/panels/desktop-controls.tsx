@@ -3,7 +3,7 @@ import { fingertipSpanFromArmSpan, statureFromEyeHeight } from 'threepoint/core'
 import { listenToShortcuts, type Shortcuts } from 'threepoint-ui';
 import { viewNames } from '../../scene/desktop-view';
 import type { InputParts } from '../input/input-parts';
-import { offeredEstimators } from '../session/estimator-texts';
+import { listedEstimators } from '../session/estimator-texts';
 import type { MotionExport } from './motion-export';
 import { Panel } from './panel';
 import type { PanelActions } from './panel-actions';
@@ -42,7 +42,9 @@ export class DesktopControls {
 
   show(): void {
     const toggle = () => this.#toggle();
-    render(<Panel state={this.#state()} actions={this.#actions} open={this.#open} toggle={toggle} />, this.#region);
+    // A study hides the controls: its participant cannot close them by Esc.
+    const open = this.#open && this.#parts.study.run === null;
+    render(<Panel state={this.#state()} actions={this.#actions} open={open} toggle={toggle} />, this.#region);
   }
 
   /** Opens or closes the panel for the user, also on later visits. */
@@ -55,10 +57,7 @@ export class DesktopControls {
     const { settings, stage, activities } = this.#parts;
     const actions = this.#actions;
     const nextView = () => viewNames[(viewNames.indexOf(stage.view.view) + 1) % viewNames.length] ?? 'front';
-    const estimators = offeredEstimators().map((name, index) => [
-      String(index + 1),
-      () => actions.chooseEstimator(name),
-    ]);
+    const estimators = listedEstimators.map((name, index) => [String(index + 1), () => actions.chooseEstimator(name)]);
     return {
       ...Object.fromEntries(estimators),
       v: () => actions.chooseView(nextView()),

@@ -1,4 +1,5 @@
 import { useRef, useState } from 'preact/hooks';
+import { useEscape } from 'threepoint-ui';
 import { Button } from 'threepoint-ui/controls';
 import { AvatarPage } from './avatar-page';
 import { BodyPage } from './body-page';
@@ -54,25 +55,42 @@ function Tabs(props: PanelPageProps) {
 }
 
 /** The controls of the desktop page, a page behind each tab. `toggle` opens or closes them. */
-export const Panel = ({
+export function Panel({
   state,
   actions,
   open,
   toggle,
-}: PanelPageProps & { readonly open: boolean; readonly toggle: () => void }) => (
-  <>
-    <div class="panel-bar">
-      <Button
-        label={exitLabel(state.inPassthrough)}
-        class="quiet"
-        hidden={!state.inSession}
-        onClick={() => actions.exitVr()}
-      />
-      <Button label="Centre" class="quiet" onClick={() => actions.recentre()} />
-      <Button label="Controls" class="quiet opener" aria-controls="panel" aria-expanded={open} onClick={toggle} />
-    </div>
-    <div class="panel" id="panel" hidden={!open}>
-      <Tabs state={state} actions={actions} />
-    </div>
-  </>
-);
+}: PanelPageProps & { readonly open: boolean; readonly toggle: () => void }) {
+  const opener = useRef<HTMLButtonElement>(null);
+  const panel = useRef<HTMLDivElement>(null);
+  useEscape(open, () => {
+    if (panel.current?.contains(document.activeElement)) opener.current?.focus();
+    toggle();
+  });
+  return (
+    <>
+      <div class="panel-bar">
+        <Button
+          label={exitLabel(state.inPassthrough)}
+          class="quiet"
+          hidden={!state.inSession}
+          onClick={() => actions.exitVr()}
+        />
+        <Button label="Centre" class="quiet" onClick={() => actions.recentre()} />
+        <button
+          type="button"
+          ref={opener}
+          class="quiet opener"
+          aria-controls="panel"
+          aria-expanded={open}
+          onClick={toggle}
+        >
+          Controls
+        </button>
+      </div>
+      <div ref={panel} class="panel" id="panel" hidden={!open}>
+        <Tabs state={state} actions={actions} />
+      </div>
+    </>
+  );
+}

@@ -19,8 +19,8 @@ function RecorderSection({ state, actions }: PanelPageProps) {
     <section>
       <h2>Recorder</h2>
       <p class="hint">
-        Records tracking in full precision on this device. Every estimator can replay every recording. Motion capture
-        (BVH, ASF with AMC, VRM Animation) is shown with its ground truth.
+        Records your head and hands on this device. Every method can replay every recording. Motion capture (BVH, ASF
+        with AMC, VRM Animation) is shown with its ground truth.
       </p>
       <div class="row">
         <Button label="Record" class="record" disabled={mode === 'recording'} onClick={() => actions.record()} />

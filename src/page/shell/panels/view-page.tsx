@@ -1,16 +1,16 @@
 import { Button, Group, Toggle } from 'threepoint-ui/controls';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
-import { offeredEstimators } from '../session/estimator-texts';
+import { listedEstimators } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel-actions';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
   'third-person': 'Behind',
   front: 'Front',
-  'first-person': 'Own eyes',
+  'first-person': 'Your eyes',
 };
 
 const keys: readonly (readonly [string, string])[] = [
-  [`1 – ${offeredEstimators().length}`, 'how the body moves'],
+  [`1 – ${listedEstimators.length}`, 'how the body moves'],
   ['V', 'next view'],
   ['C', 'calibrate'],
   ['R', 'centre'],
@@ -18,9 +18,9 @@ const keys: readonly (readonly [string, string])[] = [
   ['B', 'skeleton'],
   ['U', 'upper body only'],
   ['O', 'frame times'],
-  ['T', 'mute, in voices'],
+  ['T', 'mute yourself in voice chat'],
   ['P', 'this panel'],
-  ['Arrows, + −', 'camera, with the picture focused'],
+  ['Arrows, + −', 'camera, while the picture has the focus'],
 ];
 
 /** Returns what is known of the headset's frame rate, as a line. */

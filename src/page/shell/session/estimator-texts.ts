@@ -8,7 +8,7 @@ interface EstimatorText {
   readonly details: string;
 }
 
-/** The texts of each estimator: best first, then what needs more. */
+/** The texts of each estimator, in the order of lists. */
 export const estimatorTexts: Readonly<Record<EstimatorName, EstimatorText>> = {
   learned: {
     label: 'Learned',
@@ -44,8 +44,5 @@ export const estimatorTexts: Readonly<Record<EstimatorName, EstimatorText>> = {
   },
 };
 
-const names = Object.keys(estimatorTexts) as readonly EstimatorName[];
-
-/** Returns the estimators that visitors are offered, in this order; one for researchers once it is selected. */
-export const offeredEstimators = (selected?: EstimatorName): readonly EstimatorName[] =>
-  names.filter((name) => name !== 'paper-published' || name === selected);
+/** All estimators, in the order in which lists show them. */
+export const listedEstimators = Object.keys(estimatorTexts) as readonly EstimatorName[];

@@ -222,7 +222,7 @@ export class Headset {
       await this.#begin(passthrough);
     } catch (error) {
       this.#showError(
-        `${passthrough ? 'Passthrough' : 'VR'} could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`,
+        `${passthrough ? 'Passthrough' : 'VR'} could not be entered: ${firstLine(reasonOf(error))}. You stay in the desktop view.`,
       );
       this.#listener?.refused();
       return;
@@ -281,6 +281,7 @@ export class Headset {
     // The emulator's rates are names alone: it draws when its window does.
     const rates = new FrameRateControl(this.#emulator ? {} : xr);
     this.#session = { xr, passthrough, room, rates };
+    this.#emulator?.endOnEscape(xr);
     xr.addEventListener('end', () => {
       this.#session = null;
       this.#listener?.left();

@@ -149,9 +149,12 @@ export function createPreferenceStore(
 export type PreferenceStore = ReturnType<typeof createPreferenceStore>;
 
 /** Returns a storage of the browser; null: a policy or a private window forbids it. */
-export function browserStorage(name: 'localStorage' | 'sessionStorage'): Storage | null {
+export function browserStorage<Name extends 'localStorage' | 'sessionStorage' | 'caches'>(
+  name: Name,
+): Window[Name] | null {
   try {
-    return window[name];
+    // Without a secure context there are no caches.
+    return window[name] ?? null;
   } catch (error) {
     if (error instanceof DOMException) return null;
     throw error;

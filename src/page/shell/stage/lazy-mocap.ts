@@ -2,25 +2,36 @@ import type { Object3D } from 'three';
 import { type AvatarPose, estimatorNames, firstLine, reasonOf, recordOf, type TrackingFrame } from 'threepoint/core';
 import { type Avatar, palettes, weaveCloth } from 'threepoint/three';
 import { pageElement } from 'threepoint-ui';
-import type { MocapView } from '../../mocap/mocap-view';
+import type { MocapView, Span } from '../../mocap/mocap-view';
 import type { ClipView } from '../../mocap/motion-bones';
+import { home } from '../activity-registry';
 import { estimatorTexts } from '../session/estimator-texts';
+import type { Activities } from './activities';
 import { buildBuiltIn } from './avatar-loader';
 import type { BoneMapStore } from './bone-map-store';
 import type { DrawingParts } from './drawing-parts';
 
 const labels = recordOf(estimatorNames, (name) => estimatorTexts[name].label);
 
-/** Loads the motion capture viewer with the first file. */
+/** The span of the page's body alone. */
+const noSpan: Span = { from: 0, to: 0 };
+
+/** Loads the motion capture viewer with the first file. It belongs to the mirror: files that are opened lead there. */
 export class LazyMocap {
   readonly #parts: DrawingParts;
+  readonly #activities: Pick<Activities, 'current' | 'goTo'>;
   readonly #boneMaps: BoneMapStore;
   readonly #prepare: (object: Object3D) => Promise<void>;
   #view: MocapView | null = null;
 
   /** `prepare`: compiles the materials of an object and uploads its textures before it is shown. */
-  constructor(parts: DrawingParts, boneMaps: BoneMapStore, prepare: (object: Object3D) => Promise<void>) {
+  constructor(
+    parts: DrawingParts & { readonly activities: Pick<Activities, 'current' | 'goTo'> },
+    boneMaps: BoneMapStore,
+    prepare: (object: Object3D) => Promise<void>,
+  ) {
     this.#parts = parts;
+    this.#activities = parts.activities;
     this.#boneMaps = boneMaps;
     this.#prepare = prepare;
   }
@@ -34,6 +45,8 @@ export class LazyMocap {
     view: ClipView = {},
     requestNumber = this.#parts.recorder.nextRequest(),
   ): Promise<void> {
+    // A study decides where its participant is.
+    if (!this.#parts.study.run) await this.#activities.goTo(home);
     try {
       const { MocapView } = await import('../../mocap/mocap-view');
       this.#view ??= this.#build(MocapView);
@@ -44,17 +57,18 @@ export class LazyMocap {
     await this.#view?.open(sources, view, requestNumber);
   }
 
-  /** The distance of the middle of what is shown to the right of the body [m]. */
-  get aside(): number {
-    return this.#view?.aside ?? 0;
+  /** The places of the leftmost and the rightmost of the shown bodies, to the right of the page's body [m]. */
+  get span(): Span {
+    return this.#view?.span ?? noSpan;
   }
 
   frame(frame: TrackingFrame, pose: AvatarPose): void {
     this.#view?.frame(frame, pose);
   }
 
-  /** Updates the card; called several times a second. */
+  /** Updates the card; called several times a second. In a game it is hidden. */
   show(): void {
+    this.#view?.setVisible(this.#activities.current === null);
     this.#view?.show();
   }
 

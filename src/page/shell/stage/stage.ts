@@ -26,8 +26,8 @@ export interface Picture {
   readonly inSession: boolean;
   /** How far to the right of its user the body of a session is drawn [m]; 0: where the user is. */
   readonly beside: number;
-  /** The distance of the middle of what is looked at to the right of the body [m]. */
-  readonly aside: number;
+  /** The places of the leftmost and the rightmost of the bodies that are looked at, to the right of the body [m]. */
+  readonly span: { readonly from: number; readonly to: number };
   /** The person that a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
   /**
@@ -98,12 +98,13 @@ export class Stage {
   }
 
   /** Moves light and camera to where the body is: before anything is drawn that depends on the camera. */
-  look({ time, frame, avatar, inSession, aside, watched, beside }: Picture): void {
+  look({ time, frame, avatar, inSession, span, watched, beside }: Picture): void {
     const { view, studio } = this;
     const elapsed = Math.min(longestStep, Math.max(0, time - this.#lastTime));
     this.#lastTime = time;
     const joints = avatar?.jointPositions();
-    view.setHeight(avatar?.height ?? 0);
+    view.setBodies(avatar?.height ?? 0, span.to - span.from);
+    const aside = (span.from + span.to) / 2;
     if (watched) studio.follow({ hips: { ...watched.pelvis, z: outOfSight } });
     else if (joints) studio.follow(joints, beside);
     if (inSession) return;

@@ -27,6 +27,9 @@ interface Request {
   checked: CheckedAvatar | null;
 }
 
+/** A file that the user opened as an avatar. */
+export type OwnFile = Pick<CheckedAvatar, 'name' | 'file'>;
+
 /** Returns the reason of a failure without the name of its file. */
 const reasonFor = (name: string, error: unknown): string => firstLine(reasonOf(error)).replace(`${name}: `, '');
 
@@ -76,6 +79,11 @@ export class UserAvatar {
   /** The avatar for other players: the same object for as long as it is shown. */
   get worn(): OwnAvatar {
     return this.#state.worn;
+  }
+
+  /** The file that the user opened, as it is without a map of its bones; null: a built-in avatar. */
+  get ownFile(): OwnFile | null {
+    return this.#state.checked;
   }
 
   /** Returns the file of the avatar. Rejects with a reason if it can no longer be read. */

@@ -50,8 +50,7 @@ export const stop = (participant: string) =>
   withSentence(
     {
       title: `Stop the session of ${participant}`,
-      sentence:
-        'Why? It is recorded. The session is over at once and cannot be taken up again; what was recorded stays.',
+      sentence: 'Why? It is recorded. The session ends at once and cannot be resumed. Its records stay.',
       confirm: 'Stop it',
     },
     async (server, id, reason) => {
@@ -62,7 +61,7 @@ export const stop = (participant: string) =>
 
 /** Lets another device take a participant's place. */
 export async function release(participant: string): Promise<void> {
-  const question = `Release ${participant}? Another device may then go on; data that this one has not sent are lost to the server.`;
+  const question = `Release ${participant}? Another device may then continue. Data that this device has not sent will be lost.`;
   if (!confirm(question)) return;
   await attempt(async (server, id) => {
     await server.release(id, participant);

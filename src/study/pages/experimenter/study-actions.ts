@@ -67,7 +67,7 @@ export async function simulate(plan: StudyPlan): Promise<void> {
     const id = await storeSimulation(server, plan, { ...simulation, at: Date.now() / 1000, onProgress });
     await listStudies(server);
     await openStudy(id);
-    return `Effects: ${effectsInWords(simulation.effects)} The results of the simulation can be looked at now.`;
+    return `Effects: ${effectsInWords(simulation.effects)} Its results can be opened now.`;
   });
 }
 

@@ -1,7 +1,8 @@
 import { type Calibration, writeRecording } from 'threepoint/core';
 import type { Notice } from 'threepoint-ui';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { FileOpener } from '../../../../src/page/shell/input/file-opener';
+import { AvatarStore } from '../../../../src/page/shell/stage/avatar-store';
 import type { StageParts } from '../../../../src/page/shell/stage/stage-parts';
 import { Recorder } from '../../../../src/page/studio/recorder';
 import { headFrame } from '../../frames';
@@ -51,8 +52,21 @@ function slowRecording(name: string) {
   return { file, arrive };
 }
 
+/** The part of a browser's Cache Storage that stores files, in memory. */
+function cacheStorage(): CacheStorage {
+  const caches = new Map<string, Map<string, Response>>();
+  const open = async (name: string) => {
+    const cache = caches.get(name) ?? new Map<string, Response>();
+    caches.set(name, cache);
+    return { put: async (address: string, response: Response) => void cache.set(address, response) };
+  };
+  const match = async (address: string, { cacheName = '' }: MultiCacheQueryOptions = {}) =>
+    caches.get(cacheName)?.get(address)?.clone();
+  return { open, match, delete: async (name: string) => caches.delete(name) } as unknown as CacheStorage;
+}
+
 /** The files of a page, with its real recorder; what they do to body and avatar is written down. */
-function files() {
+function files(caches: CacheStorage | null = cacheStorage()) {
   const notices: Notice[] = [];
   const done: string[] = [];
   const opened: (string | File)[] = [];
@@ -74,6 +88,7 @@ function files() {
         avatar: {
           notes: ['no hand follows LowerArm.L: a joint was made where that arm ends'],
           name: 'robot.vrm',
+          ownFile: { name: 'robot.vrm', file: new Blob(['robot']) },
           async open(source: string | File) {
             opened.push(source);
             return true;
@@ -86,6 +101,7 @@ function files() {
         body: { discontinuity: () => void done.push(`the body begins anew while ${recorder.mode}`) },
         onChange: () => void done.push('shown'),
       }),
+      new AvatarStore(caches),
     ),
   };
 }
@@ -173,6 +189,37 @@ describe('a dropped file', () => {
     expect(recorder.mode).toBe('idle');
     const note = 'No hand follows LowerArm.L: a joint was made where that arm ends.';
     expect(notices).toEqual([{ level: 'info', text: `robot.vrm is your avatar now. ${note}` }]);
+  });
+
+  test('an opened avatar is shown again on later visits, until a body of ours is chosen', async () => {
+    const caches = cacheStorage();
+    await files(caches).files.open(new File(['glTF'], 'robot.vrm'));
+    const next = files(caches);
+    await next.files.openStoredAvatar();
+    const stored = next.opened.filter((source) => source instanceof File);
+    expect(stored.map(({ name }) => name)).toEqual(['robot.vrm']);
+    expect(await stored[0]?.text()).toBe('robot');
+    expect(next.notices).toEqual([]);
+
+    vi.stubGlobal('location', { href: 'http://localhost/' });
+    vi.stubGlobal('history', { replaceState: () => undefined });
+    next.files.showBuiltInAvatar();
+    const last = files(caches);
+    await last.files.openStoredAvatar();
+    expect(last.opened).toEqual([]);
+  });
+
+  test('an avatar that the browser does not store is announced with what to do', async () => {
+    const full = async () => {
+      throw new DOMException('no space is left', 'QuotaExceededError');
+    };
+    for (const caches of [null, { open: full, match: full } as unknown as CacheStorage]) {
+      const { files: page, notices, opened } = files(caches);
+      await page.openStoredAvatar();
+      expect(opened).toEqual([]);
+      await page.open(new File(['glTF'], 'robot.vrm'));
+      expect(notices[0]?.text).toMatch(/ This browser cannot store it: open it again on your next visit\.$/);
+    }
   });
 
   test.each([

@@ -19,7 +19,7 @@ import {
   menuMargin,
 } from '../../../activity/activity-menu';
 import { home } from '../../activity-registry';
-import { estimatorTexts, offeredEstimators } from '../../session/estimator-texts';
+import { estimatorTexts, listedEstimators } from '../../session/estimator-texts';
 import { exitLabel } from '../panel-state';
 
 export interface VrMenuState {
@@ -79,7 +79,7 @@ function estimatorButtons(
   { estimator, unavailable, deviceBody }: VrMenuState,
   actions: VrMenuActions,
 ): readonly MenuButton[] {
-  const offered = offeredEstimators(estimator).filter((name) => deviceBody || name !== 'device');
+  const offered = listedEstimators.filter((name) => deviceBody || name !== 'device');
   const each = (estimatorsHeight + estimatorGap) / offered.length;
   return offered.map((name, index) => ({
     id: name,
