@@ -76,6 +76,11 @@ interface MutableLegPose extends LegPose {
 const longestReach = 0.999;
 /** The least height of a knee's joint over the floor [m]. */
 const kneeHeight = 0.06;
+/**
+ * The least height of a hip's joint over the floor [m]. Of five people who sit on the floor it is 0.09 to 0.15: their
+ * pelvis rolls back and sinks to the height of its hip joints.
+ */
+const hipHeight = 0.1;
 /** The largest displacement of the hips in one frame [leg lengths]. */
 const longestWay = 0.5;
 /**
@@ -184,13 +189,15 @@ export class LegPosture {
     if (this.wasCarried(points, hipsYaw, deltaSeconds)) this.standUp();
     this.seconds += deltaSeconds;
     gait.update(points, this.eyeHeight, this.seconds);
-    const steps = this.stepping.update(gait.feet, stance, deltaSeconds);
     fromAxisAngle(up, hipsYaw, level);
     rotate(level, forward, levelForward);
+    this.placeHip('left', hips.position);
+    this.placeHip('right', hips.position);
+    const steps = this.stepping.update(gait.feet, this.legs, stance, deltaSeconds);
     const pinStep = this.known ? deltaSeconds / handOverSeconds : 1;
     this.known = true;
     for (const side of sides) {
-      const weight = this.pinFoot(side, hips.position, steps[side], feet?.[side] ?? null, pinStep);
+      const weight = this.pinFoot(side, steps[side], feet?.[side] ?? null, pinStep);
       this.place(side, steps[side], weight);
     }
   }
@@ -222,15 +229,20 @@ export class LegPosture {
     this.known = false;
   }
 
-  /** Writes the hip joint, the ankle and the foot before the leg's reach counts; returns the weight of the tracker. */
-  private pinFoot(side: Side, hips: Vec3, step: Foot, tracked: TrackedFeet[Side], pinStep: number): number {
-    const { hipOffset, hipsFraction, upper, lower } = this.proportions;
-    const { hip, ankle, foot } = this.own[side];
-    const pin = this.pins[side];
-    // Legs hang from a pelvis that tilts less than the lower back above it.
+  /** Writes a hip joint. Legs hang from a pelvis that tilts less than the lower back above it. */
+  private placeHip(side: Side, hips: Vec3): void {
+    const { hipOffset, hipsFraction } = this.proportions;
+    const { hip } = this.own[side];
     setVec3(hip, sideSign(side) * hipOffset.x, hipOffset.y, hipOffset.z);
     rotate(level, hip, hip);
-    setVec3(hip, hips.x + hip.x, hips.y * hipsFraction + hip.y, hips.z + hip.z);
+    setVec3(hip, hips.x + hip.x, Math.max(hips.y * hipsFraction + hip.y, hipHeight), hips.z + hip.z);
+  }
+
+  /** Writes the ankle and the foot before the leg's reach counts; returns the weight of the tracker. */
+  private pinFoot(side: Side, step: Foot, tracked: TrackedFeet[Side], pinStep: number): number {
+    const { upper, lower } = this.proportions;
+    const { hip, ankle, foot } = this.own[side];
+    const pin = this.pins[side];
     copyVec3(step.position, ankle);
     multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
     copyVec3(ankle, estimated.position);
@@ -255,7 +267,9 @@ export class LegPosture {
     if (trackedWeight > 0) lerp(toes, rotate(foot, forward, trackedToes), trackedWeight, toes);
     normalise(add(toes, levelForward, pole), levelForward, pole);
     const circle = elbowCircle(hip, ankle, this.proportions, levelForward, kneeCircle);
-    keepAboveFloor(circle, poleAcross(circle.axis, pole, fallbacks, bend), side);
+    // The knee's own hinge stays level: along a leg that lies ahead of its hip, the pole itself has no direction.
+    cross(cross(pole, up, hinge), circle.axis, bend);
+    keepAboveFloor(circle, poleAcross(circle.axis, bend, fallbacks, bend), side);
     elbowOnCircle(circle, bend, knee);
     // Both bones lie in the plane across the hinge, which is defined even where a thigh points to its knee's pole.
     cross(circle.axis, bend, hinge);
