@@ -64,7 +64,8 @@ async function main(): Promise<void> {
     const file = join(out, `${person}.f32`);
     writeFileSync(file, '');
     for (const clip of clips)
-      for (const driver of legDrivers) appendFileSync(file, new Uint8Array(framesOf(clip, driver, index.rateHz).buffer));
+      for (const driver of legDrivers)
+        appendFileSync(file, new Uint8Array(framesOf(clip, driver, index.rateHz).buffer));
     people[person] = legDrivers.length * clips.reduce((sum, { truth }) => sum + truth.length, 0);
   }
   const described = { people, inputs: gaitFeatureCount, outputs: gaitOutputCount, corpusHash: index.corpusHash };
