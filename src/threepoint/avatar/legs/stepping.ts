@@ -42,8 +42,8 @@ interface FootState extends Mutable<Foot> {
   velocityZ: number;
 }
 
-// The parameters of a step, chosen on 15 of 31 people and judged on the others, under gait networks that were trained on
-// neither. Half-lives and durations in seconds.
+// The parameters of a step, chosen on 15 of 31 people and judged on the others, each with a gait network that was not
+// trained on them. Half-lives and durations in seconds.
 /** The probability of standing below which a foot is lifted and above which it is put down. */
 const stands = 0.5;
 /** The longest time of a foot in the air: with arms held high the estimate is a jump that never ends. */
