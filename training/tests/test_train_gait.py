@@ -14,8 +14,8 @@ MIRROR_OF_INPUTS = np.array([1, 0, 2])
 
 
 def write_frames(folder: Path, people: dict[str, int]) -> None:
-    """Three inputs: one of each side and one of both. A foot stands where its input is above 0, and lies aside by as
-    much.
+    """Three inputs: one of each side and one of both. A foot stands where its input is above 0, and lies aside
+    and is lifted by as much.
     """
     folder.mkdir()
     for number, (person, rows) in enumerate(people.items()):
@@ -35,11 +35,13 @@ def write_frames(folder: Path, people: dict[str, int]) -> None:
                 none + 1,
                 none,
                 none + 1,
+                0.05 * left,
+                0.05 * right,
             ],
             1,
         )
         np.concatenate([inputs, inputs[:, MIRROR_OF_INPUTS], feet], 1).astype("<f4").tofile(folder / f"{person}.f32")
-    (folder / "index.json").write_text(json.dumps({"people": people, "inputs": 3, "outputs": 10, "corpusHash": "made"}))
+    (folder / "index.json").write_text(json.dumps({"people": people, "inputs": 3, "outputs": 12, "corpusHash": "made"}))
 
 
 def test_it_learns_and_the_same_seed_gives_the_same_file(tmp_path: Path) -> None:
@@ -76,8 +78,11 @@ def test_it_learns_and_the_same_seed_gives_the_same_file(tmp_path: Path) -> None
         )
         x = np.where(x > 0, x, np.expm1(np.minimum(x, 0))) if layer < 2 else x
     left_x, left_z, right_x, _, left_stands, right_stands = x[0, :6]
+    left_lift, right_lift = x[0, 10:]
     assert left_x == pytest.approx(-0.175, abs=0.03)
     assert right_x == pytest.approx(0.025, abs=0.03)
     assert left_z == pytest.approx(0.05, abs=0.03)
+    assert left_lift == pytest.approx(0.075, abs=0.03)
+    assert right_lift == pytest.approx(-0.075, abs=0.03)
     assert left_stands > 1
     assert right_stands < -1

@@ -23,11 +23,12 @@ from .splits import trainable
 
 Array = NDArray[np.float32]
 
-# Left and right foot's place (x, z), which stand, sine and cosine of their yaw; of the mirrored person each is at:
-_MIRROR = [2, 3, 0, 1, 5, 4, 8, 9, 6, 7]
-_MIRROR_SIGN = np.array([-1, 1, -1, 1, 1, 1, -1, 1, -1, 1], np.float32)
+# Left and right foot's place (x, z), which stand, sine and cosine of their yaw, and their lift; of the mirrored person
+# each is at:
+_MIRROR = [2, 3, 0, 1, 5, 4, 8, 9, 6, 7, 11, 10]
+_MIRROR_SIGN = np.array([-1, 1, -1, 1, 1, 1, -1, 1, -1, 1, 1, 1], np.float32)
 _STANDING = slice(4, 6)
-_OTHERS = [0, 1, 2, 3, 6, 7, 8, 9]
+_OTHERS = [0, 1, 2, 3, 6, 7, 8, 9, 10, 11]
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class GaitConfig:
 
 @dataclass(frozen=True)
 class _Data:
-    """Inputs [R, …] and targets [R, 10] of people and of their mirror images; drawn [R]: the cumulative probability of
+    """Inputs [R, …] and targets [R, 12] of people and of their mirror images; drawn [R]: the cumulative probability of
     drawing rows, its last 1.
     """
 

@@ -9,14 +9,12 @@ import { gaitOutputCount } from '../../../src/threepoint/core/estimation/gait/ga
 import { GaitFeatures, gaitFeatureCount, yawOfHips } from '../../../src/threepoint/core/estimation/gait/gait-features';
 import { loadRegressors } from '../networks';
 import { peopleOf, readIndex } from '../recordings';
-import { type DrivenLegs, driveLegs } from './leg-drivers';
+import { type DrivenLegs, driveLegs, type LegDriver, legDrivers } from './leg-drivers';
 
-/** Bodies that people wear: with both kinds of pelvis above them the feet are the same. */
-const drivers = ['ik', 'learned'] as const;
 const width = 2 * gaitFeatureCount + gaitOutputCount;
 
 /** Inputs, inputs of the mirrored person and the feet that truly were, of every frame of a clip. */
-function framesOf(clip: DrivenLegs, driver: (typeof drivers)[number], rateHz: number): Float32Array {
+function framesOf(clip: DrivenLegs, driver: LegDriver, rateHz: number): Float32Array {
   const features = new GaitFeatures();
   const { eyeHeight } = clip.calibration;
   const rows = new Float32Array(clip.truth.length * width);
@@ -34,12 +32,14 @@ function framesOf(clip: DrivenLegs, driver: (typeof drivers)[number], rateHz: nu
       const [x, z] = level({ x: ankle.x - hips.position.x, y: 0, z: ankle.z - hips.position.z });
       const [toesX, toesZ] = level({ x: ball.x - ankle.x, y: 0, z: ball.z - ankle.z });
       const turn = Math.atan2(-toesX, -toesZ);
-      return { place: [x / eyeHeight, z / eyeHeight], stands: clip.contacts[row]![side], turn };
+      const lift = (ankle.y - clip.standingAnkle) / eyeHeight;
+      return { place: [x / eyeHeight, z / eyeHeight], stands: clip.contacts[row]![side], turn, lift };
     });
     const targets = [
       ...feet.flatMap(({ place }) => place),
       ...feet.map(({ stands }) => (stands ? 1 : 0)),
       ...feet.flatMap(({ turn }) => [Math.sin(turn), Math.cos(turn)]),
+      ...feet.map(({ lift }) => lift),
     ];
     rows.set(targets, at + 2 * gaitFeatureCount);
   });
@@ -64,8 +64,9 @@ async function main(): Promise<void> {
     const file = join(out, `${person}.f32`);
     writeFileSync(file, '');
     for (const clip of clips)
-      for (const driver of drivers) appendFileSync(file, new Uint8Array(framesOf(clip, driver, index.rateHz).buffer));
-    people[person] = drivers.length * clips.reduce((sum, { truth }) => sum + truth.length, 0);
+      for (const driver of legDrivers)
+        appendFileSync(file, new Uint8Array(framesOf(clip, driver, index.rateHz).buffer));
+    people[person] = legDrivers.length * clips.reduce((sum, { truth }) => sum + truth.length, 0);
   }
   const described = { people, inputs: gaitFeatureCount, outputs: gaitOutputCount, corpusHash: index.corpusHash };
   writeFileSync(join(out, 'index.json'), JSON.stringify(described));

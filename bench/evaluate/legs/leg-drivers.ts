@@ -22,6 +22,8 @@ export interface DrivenLegs {
   readonly calibration: Calibration;
   readonly truth: readonly TrueLegs[];
   readonly contacts: readonly Contact[];
+  /** The height of the person's ankle while the foot stands [m]. */
+  readonly standingAnkle: number;
   readonly hips: Readonly<Record<LegDriver, readonly Pose<'floor'>[]>>;
   /** Head and hands as tracked. */
   readonly points: readonly Omit<GaitPoints, 'hips'>[];
@@ -67,6 +69,7 @@ export async function driveLegs(
       calibration,
       truth,
       contacts: contactsOf(truth, heights, index.rateHz),
+      standingAnkle: heights.ankle,
       hips: {
         truth: truth.map(({ hips }) => hips),
         ik: await drawnHips('ik', calibration, null, frames),

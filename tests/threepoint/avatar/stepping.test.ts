@@ -1,4 +1,4 @@
-import { distance, type Side, type Vec3 } from 'threepoint/math';
+import { distance, type Side, type Vec3, vec3 } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { type Feet, type Stance, Stepping } from '../../../src/threepoint/avatar/legs/stepping';
 import type { ExpectedFoot } from '../../../src/threepoint/core/estimation/gait/gait';
@@ -8,8 +8,8 @@ type Goals = Record<Side, ExpectedFoot>;
 
 /** Feet beside a place, both standing. */
 const beside = (x: number, z: number, yaw = 0): Goals => ({
-  left: { x: x - 0.1 * Math.cos(yaw), z: z + 0.1 * Math.sin(yaw), yaw, standing: 0.95 },
-  right: { x: x + 0.1 * Math.cos(yaw), z: z - 0.1 * Math.sin(yaw), yaw, standing: 0.95 },
+  left: { x: x - 0.1 * Math.cos(yaw), z: z + 0.1 * Math.sin(yaw), lift: 0, yaw, standing: 0.95 },
+  right: { x: x + 0.1 * Math.cos(yaw), z: z - 0.1 * Math.sin(yaw), lift: 0, yaw, standing: 0.95 },
 });
 
 /**
@@ -21,10 +21,19 @@ function walking(time: number): Goals {
     const cycle = time + phase;
     const share = cycle - Math.floor(cycle);
     const way = (Math.floor(cycle) + Math.min(1, Math.max(0, 2 * share - 1)) - phase) * 1.1;
-    return { x, z: -way, yaw: 0, standing: share < 0.5 ? 0.9 : 0.1 };
+    return { x, z: -way, lift: share < 0.5 ? 0 : 0.06, yaw: 0, standing: share < 0.5 ? 0.9 : 0.1 };
   };
   return { left: foot(-0.1, 0), right: foot(0.1, 0.5) };
 }
+
+/** Hips over both goals, within reach. */
+const above = ({ left, right }: Goals) => ({
+  left: { hip: vec3(left.x, 0.85, left.z) },
+  right: { hip: vec3(right.x, 0.85, right.z) },
+});
+
+const stepTo = (stepping: Stepping, goals: Goals, deltaSeconds: number): Feet =>
+  stepping.update(goals, above(goals), stance, deltaSeconds);
 
 /** Steps through goals at a frame rate and hands each frame's feet to `look`. */
 function step(
@@ -37,7 +46,7 @@ function step(
   for (let frame = 0; frame <= seconds * rateHz; frame++) {
     const time = frame / rateHz;
     // A copy: the feet are the same object in every frame.
-    look(structuredClone(stepping.update(goalsAt(time), stance, frame === 0 ? 0 : 1 / rateHz)), time);
+    look(structuredClone(stepTo(stepping, goalsAt(time), frame === 0 ? 0 : 1 / rateHz)), time);
   }
 }
 
@@ -144,9 +153,9 @@ describe('feet', () => {
 
   test('stand where they are expected after a reset', () => {
     const stepping = new Stepping();
-    stepping.update(beside(0, 0), stance, 1 / 60);
+    stepTo(stepping, beside(0, 0), 1 / 60);
     stepping.reset();
-    const places: Vec3[] = [stepping.update(beside(3, 2), stance, 1 / 60).left.position];
+    const places: Vec3[] = [stepTo(stepping, beside(3, 2), 1 / 60).left.position];
     expect(places[0]?.x).toBeCloseTo(2.9, 6);
     expect(places[0]?.z).toBeCloseTo(2, 6);
   });

@@ -5,6 +5,7 @@ import { Gait } from '../../core/estimation/gait/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
 import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
+import { smoothstep } from '../../core/math/damper';
 import { makePose } from '../../core/math/pose';
 import {
   copyQuat,
@@ -74,8 +75,19 @@ interface MutableLegPose extends LegPose {
 
 /** The largest distance of hip and ankle [fraction of the leg's length]: a knee that snaps straight is visible. */
 const longestReach = 0.999;
+/**
+ * The furthest that a knee turns outward [rad], and the distances of hip and ankle [fractions of the leg's length]
+ * between which it does so.
+ */
+const widestKnee = 0.7;
+const [closedLeg, openLeg] = [0.2, 0.6];
 /** The least height of a knee's joint over the floor [m]. */
 const kneeHeight = 0.06;
+/**
+ * The least height of a hip's joint over a standing ankle [m]. The hips of five people who sit on the floor are 0.09 to
+ * 0.15 over it: their pelvis rolls back and sinks to the height of its hip joints.
+ */
+const hipOverAnkle = 0.02;
 /** The largest displacement of the hips in one frame [leg lengths]. */
 const longestWay = 0.5;
 /**
@@ -122,6 +134,13 @@ const fallbacks: readonly [Vec3, Vec3] = [levelForward, up];
 function aimDown(direction: Vec3, hinge: Vec3, target: MutableQuat): Quat {
   normalise(scale(direction, -1, axisY), up, axisY);
   return fromAxes(hinge, axisY, cross(hinge, axisY, axisZ), target);
+}
+
+/** Turns the direction of a knee outward, next to the trunk, as hip and ankle come together. */
+function spreadKnee({ axis }: ElbowCircle, bend: MutableVec3, side: Side, reach: number): void {
+  const angle = widestKnee * (1 - smoothstep(closedLeg, openLeg, reach));
+  cross(axis, bend, aside);
+  addScaled(scale(bend, Math.cos(angle), bend), aside, sideSign(side) * Math.sin(angle), bend);
 }
 
 /**
@@ -184,13 +203,15 @@ export class LegPosture {
     if (this.wasCarried(points, hipsYaw, deltaSeconds)) this.standUp();
     this.seconds += deltaSeconds;
     gait.update(points, this.eyeHeight, this.seconds);
-    const steps = this.stepping.update(gait.feet, stance, deltaSeconds);
     fromAxisAngle(up, hipsYaw, level);
     rotate(level, forward, levelForward);
+    this.placeHip('left', hips.position);
+    this.placeHip('right', hips.position);
+    const steps = this.stepping.update(gait.feet, this.legs, stance, deltaSeconds);
     const pinStep = this.known ? deltaSeconds / handOverSeconds : 1;
     this.known = true;
     for (const side of sides) {
-      const weight = this.pinFoot(side, hips.position, steps[side], feet?.[side] ?? null, pinStep);
+      const weight = this.pinFoot(side, steps[side], feet?.[side] ?? null, pinStep);
       this.place(side, steps[side], weight);
     }
   }
@@ -222,15 +243,21 @@ export class LegPosture {
     this.known = false;
   }
 
-  /** Writes the hip joint, the ankle and the foot before the leg's reach counts; returns the weight of the tracker. */
-  private pinFoot(side: Side, hips: Vec3, step: Foot, tracked: TrackedFeet[Side], pinStep: number): number {
-    const { hipOffset, hipsFraction, upper, lower } = this.proportions;
-    const { hip, ankle, foot } = this.own[side];
-    const pin = this.pins[side];
-    // Legs hang from a pelvis that tilts less than the lower back above it.
+  /** Writes a hip joint. Legs hang from a pelvis that tilts less than the lower back above it. */
+  private placeHip(side: Side, hips: Vec3): void {
+    const { hipOffset, hipsFraction, ankleHeight } = this.proportions;
+    const { hip } = this.own[side];
+    const lowest = ankleHeight + hipOverAnkle;
     setVec3(hip, sideSign(side) * hipOffset.x, hipOffset.y, hipOffset.z);
     rotate(level, hip, hip);
-    setVec3(hip, hips.x + hip.x, hips.y * hipsFraction + hip.y, hips.z + hip.z);
+    setVec3(hip, hips.x + hip.x, Math.max(hips.y * hipsFraction + hip.y, lowest), hips.z + hip.z);
+  }
+
+  /** Writes the ankle and the foot before the leg's reach counts; returns the weight of the tracker. */
+  private pinFoot(side: Side, step: Foot, tracked: TrackedFeet[Side], pinStep: number): number {
+    const { upper, lower } = this.proportions;
+    const { hip, ankle, foot } = this.own[side];
+    const pin = this.pins[side];
     copyVec3(step.position, ankle);
     multiply(fromAxisAngle(up, step.yaw, footTurn), fromAxisAngle(right, -step.pitch, nod), foot);
     copyVec3(ankle, estimated.position);
@@ -255,7 +282,10 @@ export class LegPosture {
     if (trackedWeight > 0) lerp(toes, rotate(foot, forward, trackedToes), trackedWeight, toes);
     normalise(add(toes, levelForward, pole), levelForward, pole);
     const circle = elbowCircle(hip, ankle, this.proportions, levelForward, kneeCircle);
-    keepAboveFloor(circle, poleAcross(circle.axis, pole, fallbacks, bend), side);
+    // The knee's own hinge stays level: along a leg that lies ahead of its hip, the pole itself has no direction.
+    cross(cross(pole, up, hinge), circle.axis, bend);
+    spreadKnee(circle, poleAcross(circle.axis, bend, fallbacks, bend), side, far / (upper + lower));
+    keepAboveFloor(circle, bend, side);
     elbowOnCircle(circle, bend, knee);
     // Both bones lie in the plane across the hinge, which is defined even where a thigh points to its knee's pole.
     cross(circle.axis, bend, hinge);

@@ -17,23 +17,25 @@ export interface GaitNetwork {
   >;
 }
 
-/**
- * An expected foot: floor frame [m], direction of the toes [rad, 0 towards −Z], and the probability that it stands [0,
- * 1].
- */
+/** An expected foot, floor frame. */
 export interface ExpectedFoot {
+  /** The ankle on the floor plan [m]. */
   readonly x: number;
   readonly z: number;
+  /** The height of the ankle over its height while the foot stands [m]. */
+  readonly lift: number;
+  /** The direction of the toes [rad, 0 towards −Z]. */
   readonly yaw: number;
+  /** The probability that it stands [0, 1]. */
   readonly standing: number;
 }
 
 /**
  * The number of outputs: both feet relative to the hips [eye heights, their frame], logits of standing, sine and cosine
- * of each foot's yaw.
+ * of each foot's yaw, and the lift of each ankle [eye heights].
  */
-export const gaitOutputCount = 10;
-const [standingAt, yawAt] = [4, 6] as const;
+export const gaitOutputCount = 12;
+const [standingAt, yawAt, liftAt] = [4, 6, 10] as const;
 
 export const shippedGait: GaitNetwork = shipped;
 
@@ -43,8 +45,8 @@ export const shippedGait: GaitNetwork = shipped;
  */
 export class Gait {
   readonly #own: Record<Side, Mutable<ExpectedFoot>> = {
-    left: { x: 0, z: 0, yaw: 0, standing: 1 },
-    right: { x: 0, z: 0, yaw: 0, standing: 1 },
+    left: { x: 0, z: 0, lift: 0, yaw: 0, standing: 1 },
+    right: { x: 0, z: 0, lift: 0, yaw: 0, standing: 1 },
   };
   /** The newest estimate; overwritten by the next update. */
   readonly feet: Readonly<Record<Side, ExpectedFoot>> = this.#own;
@@ -92,6 +94,7 @@ export class Gait {
     const s = Math.sin(yaw);
     foot.x = hips.position.x + c * x + s * z;
     foot.z = hips.position.z - s * x + c * z;
+    foot.lift = ((outputs[liftAt + index]! + outputs[other + liftAt + 1 - index]!) / 2) * eyeHeight;
     const logit = (outputs[standingAt + index]! + outputs[other + standingAt + 1 - index]!) / 2;
     foot.standing = 1 / (1 + Math.exp(-logit));
     const sine = outputs[yawAt + at]! - outputs[yawAt + mirrorAt]!;
