@@ -7,7 +7,8 @@ import {
   estimatedJoints,
   threePointNames,
 } from 'threepoint/core';
-import { doubtOfErrors, type WorkProgress } from 'threepoint/motion';
+import { doubtOfErrors } from 'threepoint/internal';
+import type { WorkProgress } from 'threepoint/motion';
 import { Button, type Choice, Chooser, ReplayTimeline, StatusLine } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../bones/lazy-bones-form';
 import type { SkeletonToMap } from '../bones/skeleton-to-map';

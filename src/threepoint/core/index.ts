@@ -58,7 +58,7 @@ export { firstLine, reasonOf } from './errors/reasons';
 export { TransientError } from './errors/transient-error';
 export { estimateRecording } from './estimation/estimate-recording';
 export { createEstimator, networkOf } from './estimation/estimators';
-export type { EstimatorName, PoseEstimator, ThreePointName } from './estimation/pose-estimator';
+export type { EstimatorName, PaperMethod, PoseEstimator, ThreePointName } from './estimation/pose-estimator';
 export { estimatorNames, threePointNames } from './estimation/pose-estimator';
 export { nameOfAddress } from './files';
 export { type BoneMap, type BoneName, boneNames, neededBones, vrmFingerNames } from './humanoid/bones';

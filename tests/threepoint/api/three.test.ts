@@ -212,16 +212,15 @@ describe('a body in a session of three.js', () => {
     expect(wrist()).toBeGreaterThan(0.1);
   });
 
-  test('draws a frame that the page changes between reading and solving as `update` draws one', async () => {
+  test('draws the hands that a game returns from its function of a frame', async () => {
     const { headset, tracker } = await begin({ calibration: defaultCalibration, estimator: 'ik' });
     headset.putOn();
     const raised = { ...standing.head, position: { x: 0.2, y: 1.7, z: 0 } };
     for (let frame = 0; frame < 40; frame++) {
-      const time = tracker.body.tick(1000 + (frame * 1000) / 72);
-      const read = tracker.read(headset.frame, time)!;
-      expect(tracker.tracking!.inputs.buttons.left.trigger).toBe(0);
-      tracker.body.solve({ ...read, rightHand: raised });
-      tracker.draw(time);
+      tracker.update(1000 + (frame * 1000) / 72, headset.frame, (tracked) => {
+        expect(tracker.tracking!.inputs.buttons.left.trigger).toBe(0);
+        return { ...tracked, rightHand: raised };
+      });
     }
     const { leftHand, rightHand } = tracker.avatar.jointPositions();
     expect(distance(rightHand!, raised.position)).toBeLessThan(0.001);
@@ -240,6 +239,26 @@ describe('a body in a session of three.js', () => {
     expect(distance(second.jointPositions().leftHand!, tracker.pose!.leftHand!.position)).toBeLessThan(0.001);
     expect(ownHeadSeen(tracker)).toBe(false);
     expect(() => tracker.setAvatar(first)).toThrow('This avatar was disposed of with its BodyTracker.');
+  });
+
+  test('returns its avatars to a page that keeps them, and continues the session with each', async () => {
+    const { headset, tracker, run, reported } = await begin({ calibration: defaultCalibration, disposeAvatar: false });
+    headset.putOn();
+    run(40);
+    const [first, second] = [tracker.avatar, await loadAvatar(mannequin())];
+    const dispose = vi.spyOn(first, 'dispose');
+    const before = reported.length;
+    tracker.setAvatar(second);
+    run(1);
+    expect(first.object.parent).toBeNull();
+    tracker.setAvatar(first);
+    run(1);
+    expect(tracker.object.children).toEqual([first.object]);
+    expect(distance(first.jointPositions().leftHand!, tracker.pose!.leftHand!.position)).toBeLessThan(0.001);
+    expect(reported.slice(before)).toEqual([]);
+    await tracker.dispose();
+    expect(dispose).not.toHaveBeenCalled();
+    expect(first.object.parent).toBeNull();
   });
 
   test('starts without an avatar, which follows', async () => {

@@ -1,6 +1,5 @@
 import type { WebGLRenderer } from 'three';
-import { firstLine, type HapticPulse, reasonOf } from 'threepoint/core';
-import type { Avatar, BodyTracker } from 'threepoint/three';
+import { firstLine, type HapticPulse, type PaperMethod, reasonOf } from 'threepoint/core';
 import {
   type BoundarySize,
   type DeviceCommands,
@@ -15,9 +14,10 @@ import {
   requestPassthroughSession,
   requestVrSession,
   type Savings,
-  type TrackedSession,
   type XrFault,
-} from 'threepoint/webxr';
+} from 'threepoint/internal';
+import type { Avatar, BodyTracker } from 'threepoint/three';
+import type { TrackedSession } from 'threepoint/webxr';
 import { type Emulator, installEmulator } from '../../emulator/emulator';
 import { type Quality, reduceEmulatedResolution } from '../../scene/renderer';
 import type { PageContext } from './page-context';
@@ -63,7 +63,7 @@ interface Session {
 /** The headset that is worn, real or emulated, and the session in it. */
 export class Headset {
   readonly #context: PageContext;
-  readonly #tracker: BodyTracker<Avatar | null>;
+  readonly #tracker: BodyTracker<Avatar | null, PaperMethod>;
   readonly #renderer: WebGLRenderer;
   readonly #quality: Quality;
   #listener: HeadsetListener | null = null;
@@ -76,7 +76,12 @@ export class Headset {
   #real = false;
   #passthroughOffered = false;
 
-  constructor(context: PageContext, tracker: BodyTracker<Avatar | null>, renderer: WebGLRenderer, quality: Quality) {
+  constructor(
+    context: PageContext,
+    tracker: BodyTracker<Avatar | null, PaperMethod>,
+    renderer: WebGLRenderer,
+    quality: Quality,
+  ) {
     this.#context = context;
     this.#tracker = tracker;
     this.#renderer = renderer;
