@@ -75,6 +75,7 @@ function createParts(context: PageContext, loading: PageLoading) {
     clock,
     profiler: timing,
   });
+  if (store.preferences.gripOffsets) tracker.body.setGripOffsets(store.preferences.gripOffsets);
   scene.add(tracker.object);
   const sessionParts: SessionParts = {
     ...context,

@@ -7,9 +7,9 @@ import {
   sameMeasures,
   unknownFingers,
 } from 'threepoint/core';
-import { toMillimetres } from '../protocol/messages';
 import { encodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
+import { toMillimetres } from '../protocol/sent-measures';
 import { encodePeerPose, encodeProfile } from './peer-packet';
 
 /** The source of the poses to send: a `BodyTracker` or `Body` of threepoint, for example. */

@@ -13,7 +13,8 @@ import { Playback, type PlaybackReport } from '../client/playback';
 import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { TokenBucket } from '../room/token-bucket';
-import { type PeerPacket, type PeerProfile, readPeerPacket } from './peer-packet';
+import type { PeerPacket, PeerProfile } from './peer-packet';
+import { readPeerPacket } from './read-peer-packet';
 
 /** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
 export interface RemotePose {

@@ -338,6 +338,7 @@ export class BodyTracker<Shown extends Avatar | null = Avatar, Method extends Pa
         drawing: xr,
         bodyReader: this.deviceBody ? new DeviceBodyReader() : null,
         pointing: this.#pointing?.(session) ?? null,
+        gripOffsets: () => this.body.userCalibration.gripOffsets,
         onStart: () => this.body.startSession(),
         onDiscontinuity: () => this.body.discontinuity(),
         onEnd: () => this.#endTracking(),

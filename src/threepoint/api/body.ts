@@ -1,5 +1,11 @@
 import type { AvatarPose } from '../core/body/avatar-pose';
-import { assertCalibration, type Calibration, defaultCalibration, sameCalibration } from '../core/body/calibration';
+import {
+  assertCalibration,
+  type Calibration,
+  defaultCalibration,
+  type GripOffsets,
+  sameCalibration,
+} from '../core/body/calibration';
 import { createEstimator, type NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { Pinning } from '../core/estimation/pinning';
@@ -196,6 +202,13 @@ export class Body<Method extends PaperMethod = never> extends TypedEvents<BodyEv
     this.#setUserCalibration(measures, given ? 'given' : 'default');
   }
 
+  /** Sets the user's corrections of how they hold controllers. Throws a RangeError where one is too large. */
+  setGripOffsets(gripOffsets: GripOffsets): void {
+    const calibration = this.#copyChecked({ ...this.#userCalibration, gripOffsets });
+    if (this.#calibration === this.#userCalibration) this.#calibration = calibration;
+    this.#userCalibration = calibration;
+  }
+
   /** Starts a session: a headset was put on, and the user's height is estimated again. */
   startSession(): void {
     this.#inSession = true;
@@ -350,7 +363,9 @@ export class Body<Method extends PaperMethod = never> extends TypedEvents<BodyEv
   }
 
   /** Sets the user's measures; they come into force when no stand-in moves the body. */
-  #setUserCalibration(calibration: Calibration, source: CalibrationSource): void {
+  #setUserCalibration(measures: Calibration, source: CalibrationSource): void {
+    const { gripOffsets } = this.#userCalibration;
+    const calibration = measures.gripOffsets || !gripOffsets ? measures : { ...measures, gripOffsets };
     const inForce = this.#calibration === this.#userCalibration;
     this.#userCalibration = calibration;
     if (inForce) this.#applyCalibration(calibration, source);

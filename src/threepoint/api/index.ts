@@ -7,6 +7,8 @@ export {
   calibrationProblem,
   defaultCalibration,
   eyeHeightFromStature,
+  type GripOffset,
+  type GripOffsets,
 } from '../core/body/calibration';
 export { forwardKinematics, type JointPoses } from '../core/body/forward-kinematics';
 export type { FingerBend, FingerName, Fingers, HandShape } from '../core/body/hand-shape';

@@ -24,6 +24,7 @@ export { bodyFeature } from '../xr/device-body-reader';
 export { DeviceCommands } from '../xr/device-commands';
 export { drawSession, endSession } from '../xr/draw-session';
 export { defaultSavings, FrameRateControl, type Savings } from '../xr/frame-rate';
+export { gripDevice } from '../xr/grip-offsets';
 export { playPulses } from '../xr/haptics';
 export type { InputKind } from '../xr/input-reader';
 export { defaultFeatures, requestPassthroughSession, requestSession, requestVrSession } from '../xr/request-session';

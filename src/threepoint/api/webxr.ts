@@ -2,3 +2,4 @@
 export { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from '../xr/grip-offsets';
 export { Pointing } from '../xr/pointing';
 export { TrackedSession } from '../xr/tracked-session';
+export { TrackingReader } from '../xr/tracking-reader';

@@ -162,7 +162,7 @@ interface AvatarParts extends Pick<LoadedAvatar, 'vrm' | 'notes'> {
 }
 
 /** Creates an avatar from a file; a loaded file can be used once. */
-function* makeAvatar({ vrm, notes }: LoadedAvatar): Steps<Avatar> {
+function* makeAvatar({ vrm, notes, gait }: LoadedAvatar): Steps<Avatar> {
   const object = new Group();
   object.name = 'avatar';
   object.add(vrm.scene);
@@ -172,7 +172,7 @@ function* makeAvatar({ vrm, notes }: LoadedAvatar): Steps<Avatar> {
   const rig = new Rig(vrm);
   yield* tieLooseParts(vrm, rig);
   const arms = new ArmHelperJoints(rig);
-  const legs = new Legs(rig);
+  const legs = new Legs(rig, gait);
   yield* spreadLimbs(vrm.scene, [...arms.limbs(), ...legs.limbs()]);
   // The first-person meshes are cut from copies of meshes with a head, after the skin weights were shared.
   yield* setUpFirstPerson(vrm);

@@ -72,7 +72,7 @@ export async function startRegressor(
   const openWasm = () => open('wasm', 'webgpu').catch(() => open('wasm'));
   const regressor = new SessionRegressor(contract, first, openWasm, onProviderFallback);
   if (contract.name === 'paper') {
-    regressor.methods = (await import('../core/estimation/with-network')).paperMethods(regressor);
+    regressor.methods = (await import('../core/estimation/methods/paper-methods')).paperMethods(regressor);
   }
   return regressor;
 }

@@ -10,6 +10,7 @@ import { distance, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 import { toXRBody } from '../../../src/threepoint/core/motion/xr-body';
 import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import type { BodyTrackers, TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
+import { gripDevice } from '../../../src/threepoint/xr/grip-offsets';
 import { mannequin } from '../avatar/glb';
 import { controller } from '../xr/fake-headset';
 import { begin, left, right, wornHeadset } from './three-session';
@@ -210,6 +211,17 @@ describe('a body in a session of three.js', () => {
     expect(wrist()).toBeGreaterThan(0.1);
     run(100);
     expect(wrist()).toBeGreaterThan(0.1);
+  });
+
+  test('draws the wrist where the user’s offset for the controller puts it', async () => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration, estimator: 'ik' });
+    headset.putOn();
+    run(40);
+    const before = { ...tracker.avatar.jointPositions().leftHand! };
+    const [source] = headset.session.inputSources;
+    tracker.body.setGripOffsets({ [gripDevice(source!.profiles)]: { ahead: 0.03, lean: 0 } });
+    run(2);
+    expect(distance(tracker.avatar.jointPositions().leftHand!, before)).toBeCloseTo(0.03, 3);
   });
 
   test('draws the hands that a game returns from its function of a frame', async () => {

@@ -8,6 +8,7 @@ import {
   drawSession,
   endSession,
   FrameRateControl,
+  gripDevice,
   isSessionOffered,
   playPulses,
   readBoundary,
@@ -281,6 +282,16 @@ export class Headset {
     this.#follow(xr, room, passthrough);
   }
 
+  /** Remembers which controllers are held: the panel corrects their grip, also after the session. */
+  #rememberGrip(sources: Iterable<XRInputSource>): void {
+    const { store, changes } = this.#context;
+    for (const { hand, gripSpace, profiles } of sources) {
+      if (!gripSpace || hand) continue;
+      store.remember({ gripDevice: gripDevice(profiles) });
+      changes.emit();
+    }
+  }
+
   /** Follows the session until it ends. */
   #follow(xr: XRSession, room: BoundarySize | null, passthrough: boolean): void {
     // The emulator's rates are names alone: it draws when its window does.
@@ -295,6 +306,8 @@ export class Headset {
       this.#listener?.visibilityChanged();
     });
     xr.addEventListener('frameratechange', () => this.#listener?.rateChanged());
+    xr.addEventListener('inputsourceschange', ({ added }) => this.#rememberGrip(added));
+    this.#rememberGrip(xr.inputSources);
     if (!this.#context.settings.actor) this.#emulator?.release();
   }
 

@@ -1,9 +1,9 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import * as ort from 'onnxruntime-web/wasm';
+import { paperMethods } from '../../../../src/threepoint/core/estimation/methods/paper-methods';
 import { createPlainRegressor } from '../../../../src/threepoint/core/estimation/networks/learned-network';
 import type { ModelContract, PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
-import { paperMethods } from '../../../../src/threepoint/core/estimation/with-network';
 
 export type NetworkName = ModelContract['name'];
 
