@@ -172,7 +172,8 @@ export default {
       severity: 'error',
       from: {
         path: '^src/threepoint/api/',
-        pathNot: '/(three|body-tracker|avatar-source|react|onnx|onnx-worker|polyfill|webxr|files)\\.ts$',
+        pathNot:
+          '/(three|body-tracker|avatar-source|react|onnx|onnx-worker|polyfill|webxr|files|internal|internal-three)\\.ts$',
       },
       to: {
         path: '^src/threepoint/(xr|avatar|onnx|api/(three|body-tracker|avatar-source|react|onnx|onnx-worker))',

@@ -5,12 +5,10 @@ import type { WebGPURenderer } from 'three/webgpu';
 import {
   type AvatarPose,
   Body,
-  type BodyCallbacks,
-  type BodyEvents,
-  BodySolver,
+  type BodyEvent,
+  type BodyTrackers,
   type Calibration,
   copyAvatarPose,
-  createPageClock,
   defaultCalibration,
   forwardKinematics,
   type GuidedCalibration,
@@ -28,14 +26,14 @@ import 'threepoint/onnx-worker';
 import { type EmulatedBody, installBodyTracking } from 'threepoint/polyfill';
 import { RemoteAvatar, SelfAvatar } from 'threepoint/react';
 import { type Avatar, avatarMotionWriter, BodyTracker, loadAvatar } from 'threepoint/three';
-import { type BodyTrackers, pinning, trackerAtJoint } from 'threepoint/trackers';
+import { pinning, trackerAtJoint } from 'threepoint/trackers';
 
 /** With three.js, its session and an avatar. */
 export async function inTheHeadset(renderer: WebGLRenderer | WebGPURenderer, scene: Scene): Promise<BodyTracker> {
   const avatar: Avatar = await loadAvatar('/avatars/me.glb', { bones: { hips: 'Hips', head: 'Head' } });
   const body = new BodyTracker(renderer, { avatar, estimator: 'learned', calibration: 'auto', autoGrow: false });
   body.addEventListener('calibrated', ({ calibration, source }) => console.log(calibration.eyeHeight, source));
-  body.addEventListener('fallback', ({ estimator, reason }: BodyEvents['fallback']) => console.log(estimator, reason));
+  body.addEventListener('fallback', ({ estimator, reason }: BodyEvent<'fallback'>) => console.log(estimator, reason));
   body.addEventListener('trackinglost', ({ point }) => console.log(point));
   body.addEventListener('sessionend', () => console.log(body.pose));
   scene.add(body.object);
@@ -59,26 +57,19 @@ export const inReact = (send: (pose: AvatarPose | null) => void, received: RefOb
   createElement(RemoteAvatar, { avatar: '/avatars/them.vrm', pose: received, calibration: defaultCalibration }),
 ];
 
-/** Without three.js, by the runtime, with a clock that the page shares and frame times that it measures. */
+/** Without three.js, by the runtime. */
 export function withoutThree(
   options: OnnxNetworksOptions,
-  recorded: TrackingFrame,
+  frame: TrackingFrame,
   person: Calibration,
 ): number | undefined {
-  const events: BodyCallbacks = {
-    discontinuity: () => console.log('moved'),
-    heightmismatch: ({ difference }) => console.log(difference),
-  };
-  const body = new BodySolver({
-    estimator: 'paper',
-    networks: onnxNetworks(options),
-    clock: createPageClock(() => performance.now()),
-    profiler: { resume: () => undefined, mark: (part: 'features' | 'inference') => console.log(part) },
-    events,
-  });
-  const time = body.tick(performance.now());
-  const pose: AvatarPose | null = body.update({ ...recorded, time }, person);
+  const body = new Body({ estimator: 'paper', networks: onnxNetworks(options) });
+  body.addEventListener('discontinuity', () => console.log('moved'));
+  body.addEventListener('heightmismatch', ({ difference }) => console.log(difference));
+  const pose: AvatarPose | null = body.update(frame, person);
   console.log(pose?.fingers?.left?.index.knuckle, pose && copyAvatarPose(pose));
+  // @ts-expect-error the methods of the paper need the networks of threepoint/onnx
+  void new Body().setEstimator('paper');
   return pose?.body
     ? forwardKinematics(skeletonFromCalibration(body.calibration), pose.body).head.position.y
     : undefined;

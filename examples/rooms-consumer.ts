@@ -29,9 +29,10 @@ export const othersOf = (body: BodyTracker) =>
 
 /** A transport of the page, with bodies in a scene. */
 export function overAChannel(channel: RTCDataChannel, body: BodyTracker, scene: Scene): (timeMs: number) => void {
-  const others = new RemoteBodies({ maxPeers: 1, onPeerTimeout: (peer: string) => console.log(peer) });
+  const others = new RemoteBodies({ maxPeers: 1 });
+  others.addEventListener('peertimeout', ({ peer }) => console.log(peer));
   scene.add(others.object);
-  channel.onmessage = ({ data }: MessageEvent<ArrayBuffer>) => others.receive('peer', data);
+  channel.onmessage = ({ data }: MessageEvent<ArrayBuffer>) => others.receive(performance.now(), 'peer', data);
   const sender = new PoseSender((bytes) => channel.send(bytes), { name: 'Ada', rateHz: 30 });
   return (timeMs) => {
     sender.update(timeMs, body, { placement: placementOf(body.avatar.object) });
@@ -41,7 +42,8 @@ export function overAChannel(channel: RTCDataChannel, body: BodyTracker, scene: 
 
 /** Poses without three.js. */
 export function elbowsOf(packets: readonly Uint8Array[], timeMs: number): (number | undefined)[] {
-  const poses = new RemotePoses({ onRefused: (peer, reason) => console.log(peer, reason) });
-  for (const bytes of packets) if (bytes.length <= maxPeerPacketBytes) poses.receive('ada', bytes, timeMs);
+  const poses = new RemotePoses();
+  poses.addEventListener('refused', ({ peer, reason }) => console.log(peer, reason));
+  for (const bytes of packets) if (bytes.length <= maxPeerPacketBytes) poses.receive(timeMs, 'ada', bytes);
   return poses.update(timeMs).map(({ joints }: RemotePose) => joints?.leftLowerArm.position.y);
 }

@@ -1,7 +1,7 @@
 // A server of Node with rooms next to an address of its own, and a person's packets without a page.
 import { once } from 'node:events';
 import { createServer } from 'node:http';
-import { BodySolver } from 'threepoint';
+import { Body } from 'threepoint';
 import { attachRooms } from 'threepoint-relay';
 import { PoseSender, RemotePoses } from 'threepoint-rooms';
 
@@ -16,10 +16,10 @@ if (!token) throw new Error('The server issues no pass.');
 await rooms.close();
 server.close();
 
-const body = new BodySolver({ estimator: 'ik', networks: () => Promise.reject(new Error('needs no network')) });
+const body = new Body({ estimator: 'ik' });
 const at = (x, y, z) => ({ position: { x, y, z }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' });
 const poses = new RemotePoses();
-const sender = new PoseSender((bytes) => poses.receive('ada', bytes, 0), { name: 'Ada' });
+const sender = new PoseSender((bytes) => poses.receive(0, 'ada', bytes), { name: 'Ada' });
 body.update({ time: 0, head: at(0, 1.6, 0), leftHand: at(-0.25, 0.9, -0.3), rightHand: at(0.25, 0.9, -0.3) });
 sender.update(0, body);
 const [ada] = poses.update(100);

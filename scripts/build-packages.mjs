@@ -1,8 +1,8 @@
 // Builds the published packages unless each was built from exactly these sources: “threepoint” by build-library.mjs,
 // the others into dist-NAME/ as ESM with source maps and types. Bundled are their parts of packages of this repository,
 // and no others. `npm pack ./dist-NAME` makes a tarball.
-import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { isAbsolute, join } from 'node:path';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { dirname, isAbsolute, join, posix } from 'node:path';
 import { rolldown } from 'rolldown';
 import { buildLibrary, changelogOf, documentInPackage, entriesOf, writeDeclarations } from './build-library.mjs';
 import { mainOf, root } from './run-command.mjs';
@@ -51,6 +51,53 @@ function published({ private: _, devDependencies: __, publishConfig, dependencie
 const declarations = join(root, 'artifacts/declarations');
 let declared;
 
+/** The manifests of the workspaces that packages are bundled from, by their names. */
+const workspaces = Object.fromEntries(
+  ['threepoint', 'rooms'].map((folder) => {
+    const manifest = JSON.parse(readFileSync(join(root, 'src', folder, 'package.json'), 'utf8'));
+    return [manifest.name, { folder, ...manifest }];
+  }),
+);
+
+/** Returns the path of an unpublished entry's declarations; undefined: others install the module. */
+function unpublishedEntry(module) {
+  const [, name, entry] = /^(threepoint[^/]*)(\/.*)?$/.exec(module) ?? [];
+  const { folder, exports, publishConfig } = workspaces[name] ?? {};
+  const path = `.${entry ?? ''}`;
+  if (!folder || path in publishConfig.exports) return undefined;
+  return posix.join(folder, exports[path].replace(/ts$/, 'd.ts'));
+}
+
+/**
+ * Copies the declarations of a package's entries into `out`/types with all that they name. Entries of this repository
+ * that are not published are copied beside them.
+ */
+function copyDeclarations(name, out, entries) {
+  const copied = new Set();
+  const placeOf = (path) => (path.startsWith(`${name}/`) ? path.slice(name.length + 1) : path);
+  const copy = (path) => {
+    if (copied.has(path)) return;
+    copied.add(path);
+    const folder = posix.dirname(path);
+    const text = readFileSync(join(declarations, path), 'utf8').replace(
+      /(\b(?:from|import)\s*\(?\s*['"])([^'"]+)(?=['"])/g,
+      (statement, before, module) => {
+        const found = module.startsWith('.')
+          ? posix.join(folder, module.replace(/js$/, 'd.ts'))
+          : unpublishedEntry(module);
+        if (found === undefined || !existsSync(join(declarations, found))) return statement;
+        copy(found);
+        const relative = posix.relative(posix.dirname(placeOf(path)), placeOf(found)).replace(/d\.ts$/, 'js');
+        return `${before}${relative.startsWith('.') ? relative : `./${relative}`}`;
+      },
+    );
+    const target = join(out, 'types', placeOf(path));
+    mkdirSync(dirname(target), { recursive: true });
+    writeFileSync(target, text);
+  };
+  for (const entry of entries) copy(posix.join(name, posix.relative('types', entry)));
+}
+
 function bundle(name, platform) {
   const out = join(root, `dist-${name}`);
   const source = `src/${name}`;
@@ -61,7 +108,8 @@ function bundle(name, platform) {
     await writeCode(out, entriesOf(source, own), platform);
     declared ??= writeDeclarations('tsconfig.packages.json', declarations);
     await declared;
-    cpSync(join(declarations, name), join(out, 'types'), { recursive: true });
+    const typed = Object.values(own.publishConfig.exports).flatMap(({ types }) => types ?? []);
+    copyDeclarations(name, out, typed);
     copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
     const documents = {
       ...{ 'README.md': `${source}/README.md`, 'CHANGELOG.md': changelogOf(source) },

@@ -1,6 +1,6 @@
 // Uses the packed packages as their users do, in an empty folder outside the repository. Compiles the consumers in
 // examples/ against them, with the module resolution of bundlers and of Node, strictly and with declarations checked;
-// runs the programs of Node there.
+// runs the programs of Node there. Checks that what is internal cannot be named.
 import { copyFileSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -54,8 +54,32 @@ async function compile(config) {
   return faults;
 }
 
+/** What a page cannot name: each line must be an error. */
+const internalUses = [
+  "export type * from 'threepoint/core';",
+  "export type * from 'threepoint/math';",
+  "export type * from 'threepoint/files';",
+  "export type * from 'threepoint/internal';",
+  "export type * from 'threepoint/internal/three';",
+  "export type * from 'threepoint-rooms/internal';",
+  "export type * from 'threepoint-rooms/host';",
+  'body.tick(0);',
+  'body.solve(null);',
+  'body.warmUp([]);',
+  "new Body({ estimator: 'paper' });",
+  'new Body({ clock: null });',
+  'new Body({ profiler: null });',
+];
+
+/** Compiles uses of what is internal; the compiler reports those that it accepts. */
+async function compileInternalUses() {
+  const lines = internalUses.map((use) => `// @ts-expect-error ${use}\n${use}`);
+  const code = ["import { Body } from 'threepoint';", 'declare const body: Body;', ...lines].join('\n');
+  writeFileSync(join(folder, 'internal-uses.ts'), code);
+  await compileConsumer('internal-uses.ts', []);
+}
+
 async function compileConsumer(consumer, types) {
-  copyFileSync(join(root, 'examples', consumer), join(folder, consumer));
   for (const resolution of resolutions) {
     const config = join(folder, `tsconfig.${consumer}.${resolution.moduleResolution}.json`);
     const compilerOptions = {
@@ -117,7 +141,11 @@ async function importWithoutBrowser() {
 await main(async () => {
   try {
     await install();
-    for (const [consumer, types] of Object.entries(consumers)) await compileConsumer(consumer, types);
+    for (const [consumer, types] of Object.entries(consumers)) {
+      copyFileSync(join(root, 'examples', consumer), join(folder, consumer));
+      await compileConsumer(consumer, types);
+    }
+    await compileInternalUses();
     for (const program of ['in-node.mjs', 'rooms-in-node.mjs']) await runProgram(program);
     await bundleWeights();
     await importWithoutBrowser();

@@ -6,10 +6,11 @@ import {
   type TrackingFrame,
 } from 'threepoint/core';
 import { transformPoint, type Vec3 } from 'threepoint/math';
-import { createIk, createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
+import { createIk } from '../../src/threepoint/core/estimation/estimators';
 import { copyJoints, type JointPositions } from '../../src/threepoint/core/estimation/joint-positions';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 import type { Pipeline } from '../../src/threepoint/core/estimation/pipeline';
+import { createWithNetwork } from '../../src/threepoint/core/estimation/with-network';
 import type { MeasuredFrame } from './measures';
 import type { StagedFrame } from './situations';
 

@@ -1,6 +1,6 @@
 import { writeFileSync } from 'node:fs';
 import { reasonOf, recordOf } from 'threepoint/core';
-import { doubtOfErrors } from 'threepoint/motion';
+import { doubtOfErrors } from 'threepoint/internal';
 import { readCheckFile, trackingOf } from './checked-headset';
 import { type DeviceTracking, usualTracking } from './disturbances';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';

@@ -6,7 +6,7 @@ import {
   skeletonFromCalibration,
   type TrackingFrame,
 } from 'threepoint/core';
-import { createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
+import { createWithNetwork } from '../../src/threepoint/core/estimation/with-network';
 import { quantile } from '../../src/threepoint/core/math/statistics';
 import { loadPlainRegressor } from '../../src/threepoint/onnx/load-plain-regressor';
 import { loadRegressor } from '../../src/threepoint/onnx/load-regressor';

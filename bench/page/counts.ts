@@ -1,5 +1,5 @@
 import { actorFrame, createEstimator, defaultCalibration, type TrackingFrame } from 'threepoint/core';
-import { defaultSavings, requestVrSession } from 'threepoint/webxr';
+import { defaultSavings, requestVrSession } from 'threepoint/internal';
 import { ArcheryPlay } from '../../src/page/archery/archery-play';
 import { createArcheryView } from '../../src/page/archery/archery-view';
 import { installEmulator } from '../../src/page/emulator/emulator';

@@ -7,6 +7,7 @@ import {
   skeletonFromCalibration,
 } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
+import { createAvatarBetweenFrames, RemoteAvatars } from 'threepoint/internal/three';
 import {
   composeTransforms,
   fromAxisAngle,
@@ -16,7 +17,6 @@ import {
   up,
   vec3,
 } from 'threepoint/math';
-import { createAvatarBetweenFrames, RemoteAvatars } from 'threepoint/three';
 import { ballRules } from 'threepoint-games/ball';
 import { BallView } from '../../src/page/ball/ball-view';
 import { simplifyAtDistance } from '../../src/page/people/match/simplify-at-distance';

@@ -5,6 +5,7 @@ import {
   defaultCalibration,
   type EstimatorName,
   estimatorNames,
+  type PaperMethod,
   recordOf,
   skeletonFromCalibration,
 } from 'threepoint/core';
@@ -35,10 +36,10 @@ function quantiles(values: readonly number[]) {
 const roundClock = { tick: (timestampMs: number) => timestampMs / 1000, paused: false };
 
 /** A body for each method, as the page has one. */
-async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Body>> {
-  const bodies: Partial<Record<EstimatorName, Body>> = {};
+async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Body<PaperMethod>>> {
+  const bodies: Partial<Record<EstimatorName, Body<PaperMethod>>> = {};
   for (const name of estimatorNames) {
-    const body = new Body({
+    const body = new Body<PaperMethod>({
       estimator: 'ik',
       calibration: defaultCalibration,
       networks: loadNetwork,
@@ -49,7 +50,7 @@ async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Bo
     if (body.estimator !== name) throw new Error(`${name}: ${body.unavailableEstimators[name]}`);
     bodies[name] = body;
   }
-  return bodies as Record<EstimatorName, Body>;
+  return bodies as Record<EstimatorName, Body<PaperMethod>>;
 }
 
 /** The times of every method [ms]: of each frame, and in its frame those of each block. */
@@ -58,7 +59,7 @@ const emptyTimes = () => recordOf(methods, () => ({ inFrame: [] as number[][], w
 /** Frames of every method; the canvas is drawn on and not shown, as in a headset. */
 class FrameBench {
   readonly #picture: Awaited<ReturnType<typeof openPicture>>;
-  readonly #bodies: Record<EstimatorName, Body>;
+  readonly #bodies: Record<EstimatorName, Body<PaperMethod>>;
   readonly #timing: FrameTiming;
   readonly #ccd = createCcdBody(skeletonFromCalibration(defaultCalibration));
   readonly #spent = recordOf(stageNames, () => 0);
@@ -74,7 +75,7 @@ class FrameBench {
 
   constructor(
     picture: Awaited<ReturnType<typeof openPicture>>,
-    bodies: Record<EstimatorName, Body>,
+    bodies: Record<EstimatorName, Body<PaperMethod>>,
     timing: FrameTiming,
   ) {
     this.#picture = picture;

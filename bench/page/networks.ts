@@ -2,8 +2,8 @@
 
 import { actorFrame, defaultCalibration } from 'threepoint/core';
 import { nextTurn } from '../../src/threepoint/api/run-work';
-import { createWithNetwork } from '../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../src/threepoint/core/estimation/networks/pose-regressor';
+import { createWithNetwork } from '../../src/threepoint/core/estimation/with-network';
 import { quantile } from '../../src/threepoint/core/math/statistics';
 import type { NetworkCost, NetworkWay } from '../networks';
 import { reportOutcome } from './outcome';

@@ -1,8 +1,8 @@
 import { PerspectiveCamera, type Scene } from 'three';
 import { defaultCalibration } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
+import { Mirror } from 'threepoint/internal/three';
 import { createInferenceWorker } from 'threepoint/onnx';
-import { Mirror } from 'threepoint/three';
 import { createRenderer } from '../../src/page/scene/renderer';
 import { createStudio } from '../../src/page/studio/studio';
 import { createAvatar } from '../../src/threepoint/avatar/avatar';

@@ -1,5 +1,5 @@
 import { armSpanFromFingertipSpan } from 'threepoint/core';
-import { enterVr, expect, freshTest, load, openWithHeadset, probe, test } from '../page-fixture';
+import { enterVr, expect, freshTest, joint, load, openWithHeadset, probe, settledJoint, test } from '../page-fixture';
 
 const withHeadset = 'emulate&actor=off&quality=low';
 
@@ -132,3 +132,19 @@ freshTest(
     expect((await probe(page)).calibration).toEqual(typed);
   },
 );
+
+test('a corrected grip moves the drawn wrist and is remembered after a reload', async ({ page }) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await enterVr(page);
+  await headset.place(armsAhead);
+  await page.getByRole('button', { name: 'Controls' }).click();
+  const position = page.getByRole('slider', { name: 'Wrist position' });
+  await expect(position).toHaveValue('0');
+  const before = await settledJoint(page, 'rightHand');
+  await position.fill('5');
+  await expect.poll(async () => (await joint(page, 'rightHand'))[2] - before[2]).toBeCloseTo(0.05, 2);
+  await load(page, withHeadset);
+  await expect(page.getByRole('slider', { name: 'Wrist position' })).toHaveValue('5');
+  await page.getByRole('button', { name: 'Reset grip' }).click();
+  await expect(page.getByRole('slider', { name: 'Wrist position' })).toHaveValue('0');
+});

@@ -21,7 +21,7 @@ const others = new RemoteBodies();
 scene.add(body.object, others.object);
 
 const room = await new Client(location.origin).joinOrCreate('bodies');
-room.onMessage('body', ([sender, bytes]) => others.receive(sender, bytes));
+room.onMessage('body', ([sender, bytes]) => others.receive(performance.now(), sender, bytes));
 room.onMessage('left', (sender) => others.remove(sender));
 const sender = new PoseSender((bytes) => room.sendBytes('body', bytes), { name });
 

@@ -14,7 +14,9 @@ AFRAME.registerComponent('bodies', {
     this.others = new RemoteBodies();
     this.el.object3D.add(this.body.object, this.others.object);
     // The name of the sender is the server's: the adapter passes it on.
-    NAF.connection.subscribeToDataChannel('body', (sender, _type, bytes) => this.others.receive(sender, bytes));
+    NAF.connection.subscribeToDataChannel('body', (sender, _type, bytes) =>
+      this.others.receive(performance.now(), sender, bytes),
+    );
     document.body.addEventListener('clientDisconnected', ({ detail }) => this.others.remove(detail.clientId));
     const send = (bytes) => NAF.connection.isConnected() && NAF.connection.broadcastData('body', bytes);
     this.sender = new PoseSender(send, { name });

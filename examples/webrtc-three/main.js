@@ -33,7 +33,7 @@ async function connect(offer) {
   addEventListener('pagehide', () => peer.close());
   const channel = peer.createDataChannel('bodies', { negotiated: true, id: 0, ordered: false, maxRetransmits: 0 });
   channel.binaryType = 'arraybuffer';
-  channel.onmessage = ({ data }) => others.receive(id, data);
+  channel.onmessage = ({ data }) => others.receive(performance.now(), id, data);
   channel.onopen = () => {
     channels.add(channel);
     invited = connect();

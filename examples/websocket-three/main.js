@@ -24,7 +24,7 @@ socket.binaryType = 'arraybuffer';
 // The server's number of the sender is in front of the packet; a number alone: that person has left.
 socket.addEventListener('message', ({ data }) => {
   const peer = String(new DataView(data).getUint32(0));
-  if (data.byteLength > 4) others.receive(peer, data.slice(4));
+  if (data.byteLength > 4) others.receive(performance.now(), peer, data.slice(4));
   else others.remove(peer);
 });
 const sender = new PoseSender((bytes) => socket.readyState === WebSocket.OPEN && socket.send(bytes), { name });

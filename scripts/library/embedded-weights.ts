@@ -1,8 +1,12 @@
-import type { FileEntry } from '../../src/threepoint/onnx/model-files';
+import type { BundledNetwork } from '../../src/threepoint/api/bundled/weights';
+import type { ModelContract } from '../../src/threepoint/core/estimation/networks/pose-regressor';
 
-/** Returns the weights of the learned network, which the published package contains as code. */
-export async function readBundledWeights(_: FileEntry, onProgress?: (share: number) => void): Promise<Uint8Array> {
-  const { default: weights } = await import('../../public/models/learned.bin');
+/** Returns the learned network, which the published package contains as code that loads on demand. */
+export async function readBundledNetwork(onProgress?: (fraction: number) => void): Promise<BundledNetwork> {
+  const [{ default: contract }, { default: weights }] = await Promise.all([
+    import('../../public/models/learned.json', { with: { type: 'json' } }),
+    import('../../public/models/learned.bin'),
+  ]);
   onProgress?.(1);
-  return weights;
+  return { contract: contract as unknown as ModelContract, weights };
 }

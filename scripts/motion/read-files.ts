@@ -3,7 +3,7 @@
 // request.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
-import type { MocapSource } from 'threepoint/motion';
+import type { MocapSource } from 'threepoint/internal';
 import { reasonOf } from '../../src/threepoint/core/errors/reasons';
 import { readSkeletonMap } from '../../src/threepoint/core/mocap/read-skeleton-map';
 import { type FileBytes, FileReaderProcess } from './reader-process';

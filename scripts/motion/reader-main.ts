@@ -1,6 +1,6 @@
 // Imports are of single modules, and those with three.js wait for a file that needs them: this process starts for each
 // reading, in tests of the training some forty times.
-import type { MocapSource } from 'threepoint/motion';
+import type { MocapSource } from 'threepoint/internal';
 import { reasonOf } from '../../src/threepoint/core/errors/reasons';
 import { prepareMocap, readTruthMotion } from '../../src/threepoint/core/mocap/prepare-mocap';
 import { finishWork } from '../../src/threepoint/core/motion/work';

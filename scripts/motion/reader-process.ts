@@ -1,6 +1,6 @@
 import { type ChildProcess, fork } from 'node:child_process';
 import { join } from 'node:path';
-import type { MocapClip, MocapSource } from 'threepoint/motion';
+import type { MocapClip, MocapSource } from 'threepoint/internal';
 import type { ReadMocap } from '../../src/threepoint/core/mocap/prepare-mocap';
 
 /** A file of motion or of an avatar, with what its format needs. */

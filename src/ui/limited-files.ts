@@ -1,7 +1,7 @@
-import { type DownloadOptions, downloadLimited, type FileKind, fileTooLargeError } from 'threepoint';
 import { nameOfAddress } from 'threepoint/core';
+import { type DownloadOptions, downloadLimited, type FileKind, fileTooLargeError } from 'threepoint/internal';
 
-export type { FileKind } from 'threepoint';
+export type { FileKind } from 'threepoint/internal';
 
 /** The name of a file for messages: its file name, or the last segment of an address. */
 export const fileNameOf = (source: string | File): string =>

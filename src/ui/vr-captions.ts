@@ -1,5 +1,5 @@
+import { showToEyesOnly } from 'threepoint/internal/three';
 import { addScaled, dampVec3, forward, type Pose, rotate, type Vec3, vec3 } from 'threepoint/math';
-import { showToEyesOnly } from 'threepoint/three';
 import { drawText, fillRoundedRect, textWidth, vrColors } from './canvas-drawing';
 import { createVrPanel } from './vr-panel';
 

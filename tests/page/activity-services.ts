@@ -1,7 +1,7 @@
 import { Group, Scene } from 'three';
 import { createPageClock, defaultAvatar, defaultCalibration, MutablePointer } from 'threepoint/core';
+import { GazeTargets } from 'threepoint/internal/three';
 import { vec3 } from 'threepoint/math';
-import { GazeTargets } from 'threepoint/three';
 import type { StudyRun } from 'threepoint-study/participant';
 import { type Notice, ServerPresence } from 'threepoint-ui';
 import type { ActivityServices } from '../../src/page/activity/activity-context';

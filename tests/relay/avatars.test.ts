@@ -1,7 +1,7 @@
 import { createHash, randomBytes } from 'node:crypto';
 import { request as httpRequest } from 'node:http';
 import { maxAvatarBytes } from 'threepoint/core';
-import { createAvatarExchange, createRoomPass } from 'threepoint-rooms/socket';
+import { createAvatarExchange, createRoomPass } from 'threepoint-rooms/internal';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { reportFigures } from '../reliability/report-figures';
 import { paperPlan } from '../study/model/studies';

@@ -1,7 +1,7 @@
 import { defaultCalibration } from 'threepoint/core';
 import { type BallState, ballKind } from 'threepoint-games/ball';
-import { bannerText } from 'threepoint-rooms';
 import { messageEvent, protocolVersion } from 'threepoint-rooms/host';
+import { bannerText } from 'threepoint-rooms/internal';
 import type { ConnectionStatus } from 'threepoint-rooms/room';
 import { afterAll, beforeAll, describe, expect, onTestFinished, test, vi } from 'vitest';
 import { RoomTokens } from '../../src/relay/access/room-tokens';

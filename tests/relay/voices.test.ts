@@ -1,5 +1,5 @@
 import { createHmac } from 'node:crypto';
-import type { SignalBody } from 'threepoint-rooms/room';
+import type { SignalBody } from 'threepoint-rooms/internal';
 import { describe, expect, test } from 'vitest';
 import { relayConfigurationFrom } from '../../src/relay/settings/relay-configuration';
 import { forkServer, sharedServer } from '../server/server-child';

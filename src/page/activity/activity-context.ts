@@ -1,7 +1,7 @@
 import type { BuiltInBody, Calibration, PageClock, Pointer } from 'threepoint/core';
+import type { GazeTargets } from 'threepoint/internal/three';
 import type { Pose, Ray, Side } from 'threepoint/math';
-import type { GazeTargets } from 'threepoint/three';
-import type { OwnAvatar } from 'threepoint-rooms';
+import type { OwnAvatar } from 'threepoint-rooms/internal';
 import type { StudyRun, TaskPlace } from 'threepoint-study/participant';
 import type { Notices, ServerPresence } from 'threepoint-ui';
 import type { Quality } from '../scene/renderer';

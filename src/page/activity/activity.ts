@@ -10,8 +10,8 @@ import type {
   PointerTarget,
   TrackingFrame,
 } from 'threepoint/core';
+import type { ObjectHolds } from 'threepoint/internal/three';
 import type { Pose, Ray, Side, Vec3 } from 'threepoint/math';
-import type { ObjectHolds } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
 import type { TaskPlace, TaskRunner } from 'threepoint-study/participant';
 import type { CameraScene } from '../scene/desktop-view';

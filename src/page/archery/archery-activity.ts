@@ -6,8 +6,8 @@ import {
   type PointerTarget,
   type TrackingFrame,
 } from 'threepoint/core';
+import type { ObjectHolds } from 'threepoint/internal/three';
 import { copyVec3, type Pose, type Ray, rotate, type Side, up, vec3 } from 'threepoint/math';
-import type { ObjectHolds } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
 import type { ActivityPanel, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';

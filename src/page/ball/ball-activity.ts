@@ -1,6 +1,6 @@
 import type { Buttons, HapticPulse, MutableHandShape, TrackingFrame } from 'threepoint/core';
+import type { ObjectHolds } from 'threepoint/internal/three';
 import type { Pose, Side } from 'threepoint/math';
-import type { ObjectHolds } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
 import { type BallGame, defaultBallOptions } from 'threepoint-games/ball';
 import type { ActivityContext } from '../activity/activity-context';

@@ -1,5 +1,5 @@
+import type { GazeTargets } from 'threepoint/internal/three';
 import { invertTransform, type Pose, type Transform, transformPoint } from 'threepoint/math';
-import type { GazeTargets } from 'threepoint/three';
 import { type BallEvent, type BallGame, type BallState, stations } from 'threepoint-games/ball';
 import type { DisplayedMatch } from '../people/view/displayed-match';
 import { type PeopleScene, PeopleView } from '../people/view/people-view';

@@ -1,6 +1,6 @@
 import type { MutableHandShape } from 'threepoint/core';
+import type { ObjectHolds } from 'threepoint/internal/three';
 import { type Pose, rotate, type Side, transformPoint, vec3 } from 'threepoint/math';
-import type { ObjectHolds } from 'threepoint/three';
 import { ballInPalm } from 'threepoint-games';
 import { ballRadius, basketRadius, rimTube } from 'threepoint-games/ball';
 import type { BallPlay } from './match/ball-play';

@@ -1,8 +1,8 @@
 import { render } from 'preact';
 import type { WebGLRenderer } from 'three';
 import { createPageClock, firstLine, type PageClock, reasonOf, TrackingDegradation } from 'threepoint/core';
+import { describeXrSupport } from 'threepoint/internal';
 import { BodyTracker } from 'threepoint/three';
-import { describeXrSupport } from 'threepoint/webxr';
 import { createEnterButton, installTrustedTypesPolicy, pageElement } from 'threepoint-ui';
 import { Complaint } from 'threepoint-ui/controls';
 import { type Emulator, installEmulator } from '../emulator/emulator';
@@ -83,9 +83,10 @@ async function createTracker(
   });
   scene.add(tracker.object);
   // The report names the estimator that drew.
-  tracker.addEventListener('fallback', ({ estimator, reason }) =>
-    onProblem(`The estimator “${estimator}” cannot be measured: ${firstLine(reason)}.`),
-  );
+  tracker.addEventListener('fallback', (event) => {
+    event.preventDefault();
+    onProblem(`The estimator “${event.estimator}” cannot be measured: ${firstLine(event.reason)}.`);
+  });
   for (const name of preloaded) await tracker.setEstimator(name);
   return { tracker, timing };
 }

@@ -1,5 +1,5 @@
 import type { WebGLRenderer } from 'three';
-import { bodyFeature, defaultFeatures, drawSession, isSessionOffered, requestSession } from 'threepoint/webxr';
+import { bodyFeature, defaultFeatures, drawSession, isSessionOffered, requestSession } from 'threepoint/internal';
 import type { HeadsetReport } from './headset-report';
 
 /** The optional features that are requested in addition to the defaults. None of them reveals the user's room. */

@@ -8,8 +8,9 @@ import {
   type TrackingFrame,
 } from 'threepoint/core';
 import { parseAvatar } from 'threepoint/files';
+import { createAvatarBetweenFrames, GazeTargets } from 'threepoint/internal/three';
 import { forward, rotate } from 'threepoint/math';
-import { type Avatar, createAvatarBetweenFrames, GazeTargets } from 'threepoint/three';
+import type { Avatar } from 'threepoint/three';
 import type { Activity, OpenActivity } from '../activity/activity';
 import type { ActivityContext } from '../activity/activity-context';
 import type { Quality } from '../scene/renderer';

@@ -1,6 +1,6 @@
 import type { WebGLRenderer } from 'three';
-import type { TrackingDegradation } from 'threepoint/core';
-import type { BodyTracker } from 'threepoint/three';
+import type { PaperMethod, TrackingDegradation } from 'threepoint/core';
+import type { Avatar, BodyTracker } from 'threepoint/three';
 import { endSession, type TrackedSession } from 'threepoint/webxr';
 import type { Emulator } from '../emulator/emulator';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
@@ -23,7 +23,7 @@ interface HeadsetCheckOptions {
   readonly quality: Quality;
   readonly worlds: CheckWorlds;
   /** Draws the body of the user; `timing` measures its work. */
-  readonly tracker: BodyTracker;
+  readonly tracker: BodyTracker<Avatar, PaperMethod>;
   readonly degradation: TrackingDegradation;
   readonly timing: FrameTiming;
   /** The emulated headset; null: a real one is worn. */

@@ -1,7 +1,13 @@
 import type { Body } from 'threepoint';
-import { type AvatarPose, type EstimatorName, estimatedJoints, type TrackingFrame } from 'threepoint/core';
+import {
+  type AvatarPose,
+  type EstimatorName,
+  estimatedJoints,
+  type PaperMethod,
+  type TrackingFrame,
+} from 'threepoint/core';
+import type { InputKind } from 'threepoint/internal';
 import { isTracked, type Side, sides } from 'threepoint/math';
-import type { InputKind } from 'threepoint/webxr';
 import { type FrameSummary, quantilesIn } from '../shell/session/frame-timing';
 import { DeviceDifference } from '../shell/stage/device-difference';
 import type { MeasuredQuantity } from './check-steps';
@@ -18,7 +24,7 @@ interface CheckFrame {
 
 /** Collects the figures of a check from its frames. */
 export class Measurements {
-  readonly #body: Pick<Body, 'calibration' | 'estimator'>;
+  readonly #body: Pick<Body<PaperMethod>, 'calibration' | 'estimator'>;
   readonly #noise = { head: new TrackerNoise(), left: new TrackerNoise(), right: new TrackerNoise() };
   readonly #losses = { left: new TrackingLosses(), right: new TrackingLosses() };
   readonly #noiseSources: Record<TrackerName, 'headset' | InputKind> = {
@@ -35,7 +41,7 @@ export class Measurements {
   readonly #ahead: number[] = [];
   readonly #delays: number[] = [];
 
-  constructor(body: Pick<Body, 'calibration' | 'estimator'>) {
+  constructor(body: Pick<Body<PaperMethod>, 'calibration' | 'estimator'>) {
     this.#body = body;
   }
 

@@ -1,7 +1,7 @@
 import type { Mesh } from 'three';
 import { headingOf } from 'threepoint/core';
+import { showToEyesOnly } from 'threepoint/internal/three';
 import { addScaled, clamp, dampVec3, forward, type Pose, rotate, type Vec3, vec3, wrapAngle } from 'threepoint/math';
-import { showToEyesOnly } from 'threepoint/three';
 import { createVrPanel, drawText, drawTextLines, fillRoundedRect, vrColors } from 'threepoint-ui/vr';
 import { disposeTree } from '../scene/dispose-tree';
 

@@ -1,6 +1,15 @@
-import type { BodySolverOptions } from 'threepoint';
-import { createEstimator, type EstimatorName, firstLine, networkOf, type Replayable, reasonOf } from 'threepoint/core';
-import { runWork, type WorkProgress } from 'threepoint/motion';
+import type { LoadNetwork } from 'threepoint';
+import {
+  createEstimator,
+  type EstimatorName,
+  firstLine,
+  networkOf,
+  type PaperMethod,
+  type Replayable,
+  reasonOf,
+} from 'threepoint/core';
+import { runWork } from 'threepoint/internal';
+import type { WorkProgress } from 'threepoint/motion';
 import { type JointErrors, meanErrors } from './joint-errors';
 import type { Truth } from './truth';
 
@@ -13,12 +22,12 @@ const notStarted: WorkProgress = { fraction: 0, secondsLeft: null };
 export class ClipMeans {
   readonly #recording: Replayable;
   readonly #truth: Truth;
-  readonly #networks: BodySolverOptions['networks'];
+  readonly #networks: LoadNetwork<PaperMethod>;
   readonly #means = new Map<EstimatorName, ClipMean>();
   readonly #cancellation = new AbortController();
   #busy = false;
 
-  constructor(recording: Replayable, truth: Truth, networks: BodySolverOptions['networks']) {
+  constructor(recording: Replayable, truth: Truth, networks: LoadNetwork<PaperMethod>) {
     this.#recording = recording;
     this.#truth = truth;
     this.#networks = networks;

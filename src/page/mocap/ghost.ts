@@ -11,8 +11,8 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import type { TruthJoint } from 'threepoint/internal';
 import type { Quat, Vec3 } from 'threepoint/math';
-import type { TruthJoint } from 'threepoint/motion';
 
 type Places = Readonly<Partial<Record<TruthJoint, Vec3>>>;
 

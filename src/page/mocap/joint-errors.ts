@@ -9,8 +9,8 @@ import {
   skeletonFromCalibration,
   type UpperBodyPose,
 } from 'threepoint/core';
+import type { TruthJoint } from 'threepoint/internal';
 import { distance, type Vec3 } from 'threepoint/math';
-import type { TruthJoint } from 'threepoint/motion';
 import type { Truth } from './truth';
 
 /** The distances between estimated and true joints [cm], in the order of `estimatedJoints`. */

@@ -7,7 +7,8 @@ import {
   estimatedJoints,
   threePointNames,
 } from 'threepoint/core';
-import { doubtOfErrors, type WorkProgress } from 'threepoint/motion';
+import { doubtOfErrors } from 'threepoint/internal';
+import type { WorkProgress } from 'threepoint/motion';
 import { formatSentence, useEscape } from 'threepoint-ui';
 import { Button, type Choice, Chooser, ReplayTimeline, Sentences, StatusLine } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../bones/lazy-bones-form';

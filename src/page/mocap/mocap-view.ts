@@ -1,15 +1,18 @@
 import type { Object3D } from 'three';
-import type { BodySolverOptions, ReplayState } from 'threepoint';
+import type { LoadNetwork } from 'threepoint';
 import {
   type AvatarPose,
   type BoneMap,
   type EstimatorName,
   firstLine,
+  type PaperMethod,
   type Replayable,
   reasonOf,
   type TrackingFrame,
 } from 'threepoint/core';
-import { mocapRateHz, type PreparedMocap, type WorkProgress } from 'threepoint/motion';
+import type { ReplayState } from 'threepoint/internal';
+import { mocapRateHz, type PreparedMocap } from 'threepoint/internal';
+import type { WorkProgress } from 'threepoint/motion';
 import type { Avatar } from 'threepoint/three';
 import { fileNameOf, type Notices } from 'threepoint-ui';
 import { ClipMeans } from './clip-means';
@@ -46,7 +49,7 @@ interface MocapViewOptions {
   readonly replay: Replay;
   /** The method of the page's body, and its replacement by another one. */
   readonly method: { readonly selected: EstimatorName; select(estimator: EstimatorName): void };
-  readonly networks: BodySolverOptions['networks'];
+  readonly networks: LoadNetwork<PaperMethod>;
   readonly boneMaps: BoneMaps;
   readonly notices: Pick<Notices, 'show'>;
   loadAvatar(): Promise<Avatar>;

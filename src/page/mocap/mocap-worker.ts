@@ -1,7 +1,6 @@
-import { sha256Base64Url } from 'threepoint';
 import { type FileBones, firstLine, reasonOf, UnknownBonesError } from 'threepoint/core';
 import { isGltfMotion, readGltfMotion } from 'threepoint/files';
-import { type MocapSource, type PreparedMocap, prepareMocap } from 'threepoint/motion';
+import { type MocapSource, type PreparedMocap, prepareMocap, sha256Base64Url } from 'threepoint/internal';
 import { type FileKind, fileNameOf, readLimited } from 'threepoint-ui';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
 import { isTable, purposeOfTable } from './table-files';

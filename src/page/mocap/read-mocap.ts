@@ -1,5 +1,6 @@
 import { type FileBones, UnknownBonesError } from 'threepoint/core';
-import { type PreparedMocap, secondsLeft, type WorkOptions } from 'threepoint/motion';
+import { type PreparedMocap, secondsLeft } from 'threepoint/internal';
+import type { WorkOptions } from 'threepoint/motion';
 import { fileNameOf } from 'threepoint-ui';
 import type { GivenBones, MocapFile, MocapFiles } from './mocap-files';
 import type { MocapRequest, MocapResponse, MotionMap } from './mocap-worker';

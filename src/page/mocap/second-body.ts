@@ -1,13 +1,14 @@
 import { Group, type Object3D } from 'three';
-import { type BodyEvents, BodySolver, type BodySolverOptions, ReplayedBody, type ReplayState } from 'threepoint';
-import type { Calibration, EstimatorName, TrackingFrame, UpperBodyPose } from 'threepoint/core';
+import { Body, type BodyEvents, type LoadNetwork } from 'threepoint';
+import type { Calibration, EstimatorName, PaperMethod, TrackingFrame, UpperBodyPose } from 'threepoint/core';
+import { ReplayedBody, type ReplayState } from 'threepoint/internal';
 import type { Avatar } from 'threepoint/three';
 
 interface SecondBodyOptions {
   readonly scene: Object3D;
   readonly calibration: Calibration;
   readonly estimator: EstimatorName;
-  readonly networks: BodySolverOptions['networks'];
+  readonly networks: LoadNetwork<PaperMethod>;
   /** The replay that moves the body. */
   readonly replay: ReplayState;
   /** The distance of the second body to the right of the first [m]. */
@@ -19,7 +20,7 @@ interface SecondBodyOptions {
 /** Another method's body of the same person, next to the first. */
 export class SecondBody {
   readonly object = new Group();
-  readonly #body: BodySolver;
+  readonly #body: Body<PaperMethod>;
   readonly #replayed: ReplayedBody;
   #avatar: Avatar | null = null;
   #disposed = false;
@@ -28,7 +29,11 @@ export class SecondBody {
   readonly ready: Promise<void>;
 
   constructor({ scene, calibration, estimator, networks, replay, aside, loadAvatar, onFallback }: SecondBodyOptions) {
-    this.#body = new BodySolver({ calibration, estimator, networks, events: { fallback: onFallback } });
+    this.#body = new Body({ calibration, estimator, networks });
+    this.#body.addEventListener('fallback', (event) => {
+      event.preventDefault();
+      onFallback(event);
+    });
     this.#replayed = new ReplayedBody(this.#body, replay);
     this.object.position.x = aside;
     scene.add(this.object);

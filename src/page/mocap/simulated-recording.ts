@@ -1,6 +1,6 @@
 import type { Replayable, TrackingFrame, TrackingFrames } from 'threepoint/core';
+import { type MocapClip, mocapRateHz, trackedWidth } from 'threepoint/internal';
 import { normaliseQuat, quat, type TrackedPose, vec3 } from 'threepoint/math';
-import { type MocapClip, mocapRateHz, trackedWidth } from 'threepoint/motion';
 
 /** The tracking of a clip. Frames are computed on request and not kept: half an hour of them would block the page. */
 class SimulatedFrames implements TrackingFrames {

@@ -1,5 +1,5 @@
+import { type MocapClip, mocapRateHz, type TruthJoint, truthJoints } from 'threepoint/internal';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from 'threepoint/math';
-import { type MocapClip, mocapRateHz, type TruthJoint, truthJoints } from 'threepoint/motion';
 
 const width = 3 * truthJoints.length;
 

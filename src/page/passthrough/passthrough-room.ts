@@ -1,6 +1,6 @@
 import { Fog, type Object3D } from 'three';
-import { thirdPersonOnlyLayer } from 'threepoint/three';
-import type { BoundarySize } from 'threepoint/webxr';
+import type { BoundarySize } from 'threepoint/internal';
+import { thirdPersonOnlyLayer } from 'threepoint/internal/three';
 import type { Notices } from 'threepoint-ui';
 import type { Activity, FloorNeeds } from '../activity/activity';
 import type { Surroundings } from '../scene/surroundings';

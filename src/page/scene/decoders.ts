@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry } from 'three';
-import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { avatarLimits } from 'threepoint';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import type { Decoders } from 'threepoint/files';
+import { avatarLimits } from 'threepoint/internal';
 import type { DracoRequest, DracoResponse } from './draco-worker';
 
 const maxNumbers = avatarLimits.triangles * 3;
@@ -90,6 +90,13 @@ function geometryOf(answer: DracoResponse): BufferGeometry {
 async function meshopt(loader: GLTFLoader): Promise<void> {
   const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js');
   loader.setMeshoptDecoder(MeshoptDecoder);
+}
+
+/** Returns a loader with all decoders. */
+export async function createDecodingLoader(): Promise<GLTFLoader> {
+  const loader = new GLTFLoader();
+  for (const decode of Object.values(decoders)) await decode(loader);
+  return loader;
 }
 
 /** The decoders of compressed files by the name of their extension, loaded when a file needs them. */

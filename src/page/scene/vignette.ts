@@ -1,6 +1,6 @@
 import { BackSide, Mesh, ShaderMaterial, SphereGeometry } from 'three';
+import { showToEyesOnly } from 'threepoint/internal/three';
 import { type Pose, smoothstep } from 'threepoint/math';
-import { showToEyesOnly } from 'threepoint/three';
 
 /** Seconds until the picture is whole again after a turn. */
 const openingSeconds = 0.4;

@@ -1,7 +1,8 @@
 import type { Object3D } from 'three';
-import { createPageClock, firstLine, TrackingDegradation } from 'threepoint/core';
+import { createPageClock, firstLine, type PaperMethod, TrackingDegradation } from 'threepoint/core';
+import { GazeTargets } from 'threepoint/internal/three';
 import { sides } from 'threepoint/math';
-import { type Avatar, BodyTracker, GazeTargets } from 'threepoint/three';
+import { type Avatar, BodyTracker } from 'threepoint/three';
 import { Pointing } from 'threepoint/webxr';
 import { createMouseAim, pageElement, pageFolder, ServerPresence } from 'threepoint-ui';
 import { createActor } from '../emulator/actor';
@@ -68,12 +69,13 @@ function createParts(context: PageContext, loading: PageLoading) {
   const { renderer } = stage;
   const { scene } = stage.studio;
   const clock = createPageClock(() => performance.now());
-  const tracker = new BodyTracker<Avatar | null>(renderer, {
+  const tracker = new BodyTracker<Avatar | null, PaperMethod>(renderer, {
     ...bodyOptions(context),
     networks,
     clock,
     profiler: timing,
   });
+  if (store.preferences.gripOffsets) tracker.body.setGripOffsets(store.preferences.gripOffsets);
   scene.add(tracker.object);
   const sessionParts: SessionParts = {
     ...context,
@@ -168,7 +170,9 @@ function connectParts(page: Page): void {
   });
   tracker.addEventListener('heightmismatch', ({ difference }) => userCalibration.outgrown(difference));
   tracker.addEventListener('estimatorchange', changes.emit);
-  tracker.addEventListener('fallback', ({ estimator, reason }) => {
+  tracker.addEventListener('fallback', (event) => {
+    event.preventDefault();
+    const { estimator, reason } = event;
     const { label } = estimatorTexts[estimator];
     const text = `${label} could not be used, so inverse kinematics takes over. Reason: ${firstLine(reason)}`;
     notices.show('warning', text, 'estimator');

@@ -1,4 +1,4 @@
-import type { BodySolver } from 'threepoint';
+import type { Body } from 'threepoint';
 import type { AvatarPose, TrackingFrame } from 'threepoint/core';
 import type { FrameTiming } from './session/frame-timing';
 
@@ -21,7 +21,7 @@ export interface FrameParts<DeviceFrame> {
 /** One frame of the page, stage by stage, each with its time. It waits for nothing. */
 export function createFrameLoop<DeviceFrame>(
   parts: FrameParts<DeviceFrame>,
-  body: Pick<BodySolver, 'tick'>,
+  body: Pick<Body, 'tick'>,
   timing: FrameTiming,
 ): (timestampMs: number, deviceFrame?: DeviceFrame) => void {
   return (timestampMs, deviceFrame) => {

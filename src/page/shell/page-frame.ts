@@ -1,4 +1,3 @@
-import { ReplayedBody } from 'threepoint';
 import {
   type AvatarPose,
   firstLine,
@@ -8,9 +7,9 @@ import {
   reasonOf,
   type TrackingFrame,
 } from 'threepoint/core';
+import { defaultSavings, ReplayedBody } from 'threepoint/internal';
+import { GazeChoice, handShapeFromButtons } from 'threepoint/internal/three';
 import type { Side } from 'threepoint/math';
-import { GazeChoice, handShapeFromButtons } from 'threepoint/three';
-import { defaultSavings } from 'threepoint/webxr';
 import { showsIdleMotion } from '../activity/activity-context';
 import type { FrameParts } from './frame-loop';
 import type { InputParts } from './input/input-parts';

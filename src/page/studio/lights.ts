@@ -9,8 +9,8 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
+import { ContactShadow } from 'threepoint/internal/three';
 import type { Vec3 } from 'threepoint/math';
-import { ContactShadow } from 'threepoint/three';
 import type { Quality } from '../scene/renderer';
 import type { DistantLight, EstimatedLight, Lighting } from '../scene/surroundings';
 

@@ -1,6 +1,6 @@
 import { type Camera, Group, MeshStandardMaterial, type Scene, type WebGLRenderer } from 'three';
+import { Mirror } from 'threepoint/internal/three';
 import type { Side } from 'threepoint/math';
-import { Mirror } from 'threepoint/three';
 import type { Quality } from '../scene/renderer';
 
 /** The user stands at the origin and looks along −Z, at the mirror on the wall [m]. */

@@ -13,13 +13,13 @@ import {
   type JoinRequest,
   type RoomMessage,
   type SeatInfo,
-  toMillimetres,
   unpackSeatInfo,
   type Welcome,
 } from '../protocol/messages';
 import { packetMs } from '../protocol/packet-time';
 import { decodePose, encodePose } from '../protocol/pose-codec';
 import { decodeFrame } from '../protocol/pose-frame';
+import { toMillimetres } from '../protocol/sent-measures';
 import type { SignalBody, Voice } from '../protocol/voice-messages';
 import type { HostedGame } from '../room/match-policy';
 import type { ClientPolicy } from './client-policy';

@@ -1,5 +1,4 @@
 import type { Object3D } from 'three';
-import { sha256Base64Url } from 'threepoint';
 import {
   type AvatarRef,
   type Calibration,
@@ -8,6 +7,7 @@ import {
   sameMeasures,
   unknownFingers,
 } from 'threepoint/core';
+import { sha256Base64Url } from 'threepoint/internal';
 import { type Avatar, loadAvatar, loadMannequin } from 'threepoint/three';
 import * as v from 'valibot';
 import type { ClientPolicy } from '../client/client-policy';

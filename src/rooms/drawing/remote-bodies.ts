@@ -1,9 +1,16 @@
 import type { Object3D } from 'three';
 import { type AvatarPose, type Calibration, type PersonalAvatar, type RemotePerson, reasonOf } from 'threepoint/core';
+import { RemoteAvatars } from 'threepoint/internal/three';
 import { copyVec3, fromAxisAngle, makeTransform, up, zero } from 'threepoint/math';
-import { type Avatar, loadMannequin, RemoteAvatars } from 'threepoint/three';
+import { type Avatar, loadMannequin } from 'threepoint/three';
 import type { PlaybackReport } from '../client/playback';
-import { type RemotePose, RemotePoses, type RemotePosesOptions } from '../peers/remote-poses';
+import {
+  type RemoteEvents,
+  type RemoteListener,
+  type RemotePose,
+  RemotePoses,
+  type RemotePosesOptions,
+} from '../peers/remote-poses';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { worldTransform } from './world-transform';
 
@@ -32,7 +39,7 @@ export interface RemoteBodiesOptions extends RemotePosesOptions {
  * @example
  * const others = new RemoteBodies();
  * scene.add(others.object);
- * channel.onmessage = ({ data }) => others.receive('ada', data);
+ * channel.onmessage = ({ data }) => others.receive(performance.now(), 'ada', data);
  * channel.onclose = () => others.remove('ada');
  * renderer.setAnimationLoop((timeMs) => {
  *   others.update(timeMs);
@@ -46,12 +53,7 @@ export class RemoteBodies {
   readonly #people = new Map<string, DrawnPeer>();
   readonly #listed: DrawnPeer[] = [];
 
-  constructor({
-    avatar: load = () => loadMannequin(),
-    idles = () => false,
-    onPeerTimeout,
-    ...options
-  }: RemoteBodiesOptions = {}) {
+  constructor({ avatar: load = () => loadMannequin(), idles = () => false, ...options }: RemoteBodiesOptions = {}) {
     this.#avatars = new RemoteAvatars({
       load: (avatar) => loadedOrMannequin(load, avatar),
       idles,
@@ -61,13 +63,16 @@ export class RemoteBodies {
       shadows: false,
     });
     this.object.name = 'others';
-    this.#poses = new RemotePoses({
-      ...options,
-      onPeerTimeout: (peer) => {
-        this.#people.delete(peer);
-        onPeerTimeout?.(peer);
-      },
-    });
+    this.#poses = new RemotePoses(options);
+    this.addEventListener('peertimeout', ({ peer }) => this.#people.delete(peer));
+  }
+
+  addEventListener<Name extends keyof RemoteEvents>(type: Name, listener: RemoteListener<Name>): void {
+    this.#poses.addEventListener(type, listener);
+  }
+
+  removeEventListener<Name extends keyof RemoteEvents>(type: Name, listener: RemoteListener<Name>): void {
+    this.#poses.removeEventListener(type, listener);
   }
 
   /** The object to add to the scene; its origin is that of the scene in which the others move. */
@@ -76,11 +81,11 @@ export class RemoteBodies {
   }
 
   /**
-   * Handles a packet of a peer. `peer` identifies the sender and must come from the transport, not from the packet.
-   * `timeMs`: the time of arrival on the clock of `update`. Returns whether the packet was accepted.
+   * Handles a packet of a peer that arrives at this time [ms] on the clock of `update`. `peer` identifies the sender
+   * and must come from the transport, not from the packet. Returns whether the packet was accepted.
    */
-  receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
-    return this.#poses.receive(peer, bytes, timeMs);
+  receive(timeMs: number, peer: string, bytes: Uint8Array | ArrayBuffer): boolean {
+    return this.#poses.receive(timeMs, peer, bytes);
   }
 
   /** Draws the bodies at this time [ms] on the page's clock. Call it in every frame. Returns the people drawn. */

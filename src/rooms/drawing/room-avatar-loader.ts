@@ -1,4 +1,3 @@
-import { downloadLimited, type FileKind, sha256Base64Url, untrustedAvatarLimits } from 'threepoint';
 import {
   type AvatarHash,
   type AvatarRef,
@@ -8,6 +7,7 @@ import {
   reasonOf,
   TransientError,
 } from 'threepoint/core';
+import { downloadLimited, type FileKind, sha256Base64Url, untrustedAvatarLimits } from 'threepoint/internal';
 import type { Avatar } from 'threepoint/three';
 import type { AvatarExchange } from '../client/avatar-exchange';
 

@@ -1,7 +1,8 @@
 import type { Object3D } from 'three';
 import { type AvatarRef, defaultAvatar, firstLine, type RemotePerson, reasonOf } from 'threepoint/core';
+import { type GazeTargets, RemoteAvatars } from 'threepoint/internal/three';
 import type { Vec3 } from 'threepoint/math';
-import { type Avatar, type GazeTargets, RemoteAvatars } from 'threepoint/three';
+import type { Avatar } from 'threepoint/three';
 import type { RoomView } from '../client/connection';
 import { type OwnAvatar, SharedAvatar } from '../client/shared-avatar';
 import type { HostedGame } from '../room/match-policy';

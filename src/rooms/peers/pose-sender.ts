@@ -7,12 +7,12 @@ import {
   sameMeasures,
   unknownFingers,
 } from 'threepoint/core';
-import { toMillimetres } from '../protocol/messages';
 import { encodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
+import { toMillimetres } from '../protocol/sent-measures';
 import { encodePeerPose, encodeProfile } from './peer-packet';
 
-/** The source of the poses to send: a `BodyTracker` or `BodySolver` of threepoint, for example. */
+/** The source of the poses to send: a `BodyTracker` or `Body` of threepoint, for example. */
 export interface PoseSource {
   /** The pose of the newest frame with its fingers, floor frame [m]; null: there is none, and others hide the body. */
   readonly pose: AvatarPose | null;

@@ -8,11 +8,13 @@ import {
   type Skeleton,
   sameMeasures,
 } from 'threepoint/core';
+import { emit, TypedEvents } from 'threepoint/internal';
 import { Playback, type PlaybackReport } from '../client/playback';
 import { decodePose } from '../protocol/pose-codec';
 import type { FloorPlacement } from '../protocol/pose-packet';
 import { TokenBucket } from '../room/token-bucket';
-import { type PeerPacket, type PeerProfile, readPeerPacket } from './peer-packet';
+import type { PeerPacket, PeerProfile } from './peer-packet';
+import { readPeerPacket } from './read-peer-packet';
 
 /** Another person in one frame. The next `update` overwrites the object: copy what you keep. */
 export interface RemotePose {
@@ -33,14 +35,21 @@ export interface RemotePose {
   readonly opacity: number;
 }
 
-export interface RemotePosesOptions {
+/** The events of remote people with their fields. */
+export interface RemoteEvents {
   /**
-   * Called with the reason for every packet that is refused. Default: the first one of each peer is reported on the
-   * console.
+   * A packet was refused. `preventDefault` suppresses the warning on the console, which reports the first one of each
+   * peer.
    */
-  readonly onRefused?: (peer: string, reason: string) => void;
-  /** Called when a peer was removed because it sent nothing for 30 s. */
-  readonly onPeerTimeout?: (peer: string) => void;
+  readonly refused: { readonly peer: string; readonly reason: string };
+  /** The peer was removed because it sent nothing for 30 s. */
+  readonly peertimeout: { readonly peer: string };
+}
+
+/** Receives an event of remote people. */
+export type RemoteListener<Name extends keyof RemoteEvents> = (event: Event & RemoteEvents[Name]) => void;
+
+export interface RemotePosesOptions {
   /** The maximum number of peers; packets of further ones are refused. Default: 64. */
   readonly maxPeers?: number;
 }
@@ -55,29 +64,34 @@ const forgetAfter = 30;
  *
  * @example
  * const poses = new RemotePoses();
- * channel.onmessage = ({ data }) => poses.receive(peer, data);
+ * channel.onmessage = ({ data }) => poses.receive(performance.now(), peer, data);
  * for (const { name, joints } of poses.update(performance.now())) drawStickFigure(name, joints);
  */
 export class RemotePoses {
   readonly #peers = new Map<string, Peer>();
   readonly #drawn: RemotePose[] = [];
-  readonly #onRefused: (peer: string, reason: string) => void;
-  readonly #onPeerTimeout: ((peer: string) => void) | undefined;
+  readonly #events = new TypedEvents<RemoteEvents>();
   readonly #maxPeers: number;
   readonly #warned = new Set<string>();
 
-  constructor({ onRefused, onPeerTimeout, maxPeers = 64 }: RemotePosesOptions = {}) {
-    this.#onRefused = onRefused ?? ((peer, reason) => this.#warnOnce(peer, reason));
-    this.#onPeerTimeout = onPeerTimeout;
+  constructor({ maxPeers = 64 }: RemotePosesOptions = {}) {
     this.#maxPeers = maxPeers;
   }
 
+  addEventListener<Name extends keyof RemoteEvents>(type: Name, listener: RemoteListener<Name>): void {
+    this.#events.addEventListener(type, listener);
+  }
+
+  removeEventListener<Name extends keyof RemoteEvents>(type: Name, listener: RemoteListener<Name>): void {
+    this.#events.removeEventListener(type, listener);
+  }
+
   /**
-   * Handles a packet of a peer. `peer` identifies the sender and must come from the transport, not from the packet.
-   * `timeMs`: the time of arrival on the clock of `update`. Returns whether the packet was accepted; a malformed one,
+   * Handles a packet of a peer that arrives at this time [ms] on the clock of `update`. `peer` identifies the sender
+   * and must come from the transport, not from the packet. Returns whether the packet was accepted; a malformed one,
    * one too many or one of another version is refused. Never throws.
    */
-  receive(peer: string, bytes: Uint8Array | ArrayBuffer, timeMs: number = performance.now()): boolean {
+  receive(timeMs: number, peer: string, bytes: Uint8Array | ArrayBuffer): boolean {
     const known = this.#peers.get(peer);
     if (!known && this.#peers.size >= this.#maxPeers) {
       return this.#reject(peer, `there are ${this.#maxPeers} peers, as many as may be`);
@@ -102,7 +116,7 @@ export class RemotePoses {
     for (const peer of this.#peers.values()) {
       if (peer.isTimedOut(time)) {
         this.remove(peer.peer);
-        this.#onPeerTimeout?.(peer.peer);
+        emit(this.#events, 'peertimeout', { peer: peer.peer });
       } else if (peer.follow(time)) this.#drawn.push(peer);
     }
     return this.#drawn;
@@ -120,7 +134,7 @@ export class RemotePoses {
   }
 
   #reject(peer: string, reason: string): false {
-    this.#onRefused(peer, reason);
+    if (!emit(this.#events, 'refused', { peer, reason })) this.#warnOnce(peer, reason);
     return false;
   }
 

@@ -7,6 +7,7 @@ import {
 } from 'threepoint/core';
 import * as v from 'valibot';
 import { cleanName } from './player-name';
+import { toMillimetres } from './sent-measures';
 import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
 
 /**
@@ -120,15 +121,6 @@ const packedSeatInfo = v.nullable(
   ]),
 );
 type PackedSeatInfo = v.InferOutput<typeof packedSeatInfo>;
-
-const millimetres = (metres: number): number => Math.round(metres * 1000) / 1000;
-
-/** Rounds the measures of a body to millimetres, as they are sent. */
-export const toMillimetres = ({ eyeHeight, armSpan, forearm }: Calibration): Calibration => ({
-  eyeHeight: millimetres(eyeHeight),
-  armSpan: millimetres(armSpan),
-  ...(forearm !== undefined && { forearm: millimetres(forearm) }),
-});
 
 /** Returns the wire form of a seat, with lengths rounded to millimetres. */
 export function packSeatInfo(info: SeatInfo | null): PackedSeatInfo {

@@ -1,3 +1,4 @@
+import type { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { type Avatar, createAvatar } from '../avatar/avatar';
 import { createWorkerCheck } from '../avatar/file/avatar-check-client';
 import { type Decoders, parseAvatar } from '../avatar/load-avatar';
@@ -22,12 +23,17 @@ export interface LoadAvatarOptions {
    * 20 MB, 100,000 triangles, 64 million pixels. Default: false.
    */
   readonly untrusted?: boolean;
+  /**
+   * A GLTFLoader with the page's decoders, which read compressed files: `setDRACOLoader`, `setKTX2Loader`,
+   * `setMeshoptDecoder`. Its plugins are not used. Default: compressed files are rejected.
+   */
+  readonly loader?: DecodingLoader;
 }
 
-export interface AvatarMotionOptions extends Pick<LoadAvatarOptions, 'bones'> {
-  /** The decoders of compressed meshes and textures. Default: none, so that a compressed file is rejected. */
-  readonly decoders?: Decoders;
-}
+/** The decoders of a GLTFLoader of three.js. */
+export type DecodingLoader = Pick<GLTFLoader, 'dracoLoader' | 'ktx2Loader' | 'meshoptDecoder'>;
+
+export type AvatarMotionOptions = Omit<LoadAvatarOptions, 'untrusted'>;
 
 /** The URL of an avatar's file, the file, or its bytes. */
 export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
@@ -41,11 +47,25 @@ export type AvatarSource = string | URL | Blob | ArrayBuffer | ArrayBufferView;
  * const avatar = await loadAvatar('/avatars/robot.glb', { bones: { hips: 'Hips', head: 'Head' } });
  */
 export async function loadAvatar(source: AvatarSource, options: LoadAvatarOptions = {}): Promise<Avatar> {
-  assertOptions('loadAvatar', options, ['bones', 'untrusted']);
-  const { bones, untrusted = false } = options;
+  assertOptions('loadAvatar', options, ['bones', 'untrusted', 'loader']);
+  const { bones, untrusted = false, loader } = options;
+  const decoders = decodersOf(loader);
   const { name, bytes } = await read(source);
-  if (!untrusted) return createAvatar(await parseAvatar(bytes, name, { bones }));
-  return loadUntrustedAvatar(bytes, name, { check: checkUntrusted, ...(bones && { bones }) });
+  if (!untrusted) return createAvatar(await parseAvatar(bytes, name, { bones, decoders }));
+  return loadUntrustedAvatar(bytes, name, { check: checkUntrusted, bones, decoders });
+}
+
+/** Returns the decoders that a page has set on its loader. */
+function decodersOf(loader: DecodingLoader | undefined): Decoders {
+  const { dracoLoader = null, ktx2Loader = null, meshoptDecoder = null } = loader ?? {};
+  const draco = async (own: GLTFLoader) => void own.setDRACOLoader(dracoLoader);
+  const basis = async (own: GLTFLoader) => void own.setKTX2Loader(ktx2Loader);
+  const meshopt = async (own: GLTFLoader) => void own.setMeshoptDecoder(meshoptDecoder);
+  return {
+    ...(dracoLoader && { KHR_draco_mesh_compression: draco }),
+    ...(ktx2Loader && { KHR_texture_basisu: basis }),
+    ...(meshoptDecoder && { EXT_meshopt_compression: meshopt, KHR_meshopt_compression: meshopt }),
+  };
 }
 
 /** Checks a file in a worker, or on the calling thread if no worker starts. */
@@ -76,12 +96,13 @@ export async function avatarMotionWriter(
   source: AvatarSource,
   options: AvatarMotionOptions = {},
 ): Promise<MotionWriter> {
-  assertOptions('avatarMotionWriter', options, ['bones', 'decoders']);
+  assertOptions('avatarMotionWriter', options, ['bones', 'loader']);
+  const { bones, loader } = options;
   const [{ createAvatarMotionWriter }, { name, bytes }] = await Promise.all([
     import('../avatar/avatar-motion-writer'),
     read(source),
   ]);
-  return createAvatarMotionWriter(bytes, name, options);
+  return createAvatarMotionWriter(bytes, name, { bones, decoders: decodersOf(loader) });
 }
 
 async function read(source: AvatarSource): Promise<{ name: string; bytes: ArrayBuffer }> {

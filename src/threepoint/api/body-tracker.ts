@@ -1,29 +1,33 @@
-import { type BaseEvent, EventDispatcher, type EventListener, Group, type Object3D } from 'three';
+import { Group, type Object3D } from 'three';
 import type { Avatar } from '../avatar/avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
-import type { EstimatorName } from '../core/estimation/pose-estimator';
+import type { DefaultMethod, PaperMethod } from '../core/estimation/pose-estimator';
 import { assertPinning, type BodyTrackers, type TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
 import type { Pointing } from '../xr/pointing';
 import { type DrawingSpace, TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
-import { Body, type BodyOptions } from './body';
-import { type BodyEvents, eventNames, bodyOptions as solverOptions } from './body-solver';
+import { Body, type BodyOptions, internalOptions, type LoadNetwork, bodyOptions as solverOptions } from './body';
+import type { BodyEvent, BodyEvents } from './body-events';
+import type { TypedEventTarget } from './event-target';
 import { loadLearned } from './load-learned';
-import { warnAfterDispose, warnOfFallback, warnOfXrDisabled } from './warnings';
+import { warnAfterDispose, warnOfXrDisabled } from './warnings';
 
 /** The part of a three.js renderer that a tracker uses: `WebGLRenderer` and `WebGPURenderer` have it. */
 export interface XrRenderer {
   readonly xr: DrawingSpace & { readonly enabled: boolean; getSession(): XRSession | null };
 }
 
-export interface BodyTrackerOptions<Shown extends Avatar | null = Avatar> extends Omit<BodyOptions, 'events'> {
+export interface BodyTrackerOptions<Shown extends Avatar | null = Avatar, Method extends PaperMethod = never>
+  extends BodyOptions<Method> {
   /**
    * The avatar, from `loadAvatar`; null: `setAvatar` follows. The tracker owns it and disposes of it. Add
    * `tracker.object` to the scene, or to the group that moves the cameras.
    */
   readonly avatar: Shown;
+  /** Whether the tracker disposes of avatars that it no longer draws. Default: true. */
+  readonly disposeAvatar?: boolean;
   /**
    * Whether to read the body that the device tracks (WebXR Body Tracking), which the estimator 'device' uses. The page
    * must request the session with the feature 'body-tracking'. Default: false.
@@ -40,14 +44,7 @@ export interface BodyTrackerOptions<Shown extends Avatar | null = Avatar> extend
   readonly modelUrl?: string | URL;
 }
 
-const trackerOptions = [
-  'avatar',
-  'deviceBody',
-  'pointing',
-  'trackers',
-  'modelUrl',
-  ...solverOptions.filter((name) => name !== 'events'),
-];
+const trackerOptions = ['avatar', 'disposeAvatar', 'deviceBody', 'pointing', 'trackers', 'modelUrl', ...solverOptions];
 
 /** The avatars that belong to a tracker, or were disposed of by one. */
 const ownedAvatars = new WeakMap<Avatar, 'drawn' | 'disposed'>();
@@ -92,14 +89,16 @@ function assertAvatar(avatar: unknown): asserts avatar is Avatar {
  *   renderer.render(scene, camera);
  * });
  */
-export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDispatcher<BodyEvents> {
+export class BodyTracker<Shown extends Avatar | null = Avatar, Method extends PaperMethod = never>
+  implements TypedEventTarget<BodyEvents>
+{
   /**
    * The object to add to the scene. Its origin is that of the renderer's reference space; it is visible while there is
    * a pose. `avatar.object` inside it is placed on the floor, also where the page has moved its user.
    */
   readonly object: Object3D = new Group();
   /** The solver of this tracker: the selected and the unavailable estimators, and the network's backend. */
-  readonly body: Body;
+  readonly body: Body<Method>;
   /** Whether the body that the device tracks is read in the sessions that start from now on. */
   deviceBody: boolean;
   readonly #renderer: XrRenderer;
@@ -109,54 +108,29 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
   #session: XRSession | null = null;
   #tracking: TrackedSession | null = null;
   #avatar: Shown;
+  readonly #disposesAvatars: boolean;
   /** Whether the avatar's head is hidden from the user's eyes. */
   #firstPerson = false;
   #disposed = false;
-  /** The page's listeners to `fallback`; without one a failed network is reported on the console. */
-  readonly #fallbackListeners = new Set<unknown>();
 
   /**
    * Throws a RangeError for a calibration that no person has or an unknown estimator; a TypeError for a missing avatar,
    * an unknown option or `trackers` without `pinning`; an Error for an avatar of another tracker.
    */
-  constructor(renderer: XrRenderer, options: BodyTrackerOptions<Shown>) {
-    super();
+  constructor(renderer: XrRenderer, options: BodyTrackerOptions<Shown, Method>) {
     assertRenderer(renderer);
-    assertOptions('BodyTracker', options, trackerOptions);
-    const { avatar, modelUrl, deviceBody = false, pointing, trackers, ...bodyOptions } = options;
+    assertOptions('BodyTracker', options, trackerOptions, internalOptions);
+    const { avatar, disposeAvatar = true, modelUrl, deviceBody = false, pointing, trackers, ...bodyOptions } = options;
     if (avatar !== null) assertAvatar(avatar);
     assertPinning(trackers, bodyOptions.pinning);
     this.#avatar = avatar;
+    this.#disposesAvatars = disposeAvatar;
     this.deviceBody = deviceBody;
     this.#pointing = pointing;
     this.#trackers = trackers;
     this.#renderer = renderer;
-    const networks =
-      modelUrl === undefined
-        ? {}
-        : {
-            networks: (name: string) =>
-              name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noRuntimeError),
-          };
-    const emit = <Name extends keyof BodyEvents>(type: Name, event: BodyEvents[Name]) =>
-      this.dispatchEvent({ type, ...event } as BaseEvent<Name> & BodyEvents[Name]);
-    this.body = new Body({
-      ...networks,
-      ...bodyOptions,
-      events: {
-        ...Object.fromEntries(
-          eventNames.map((name) => [name, (event: never) => emit(name as keyof BodyEvents, event)]),
-        ),
-        calibrated: (event) => {
-          this.#avatar?.setCalibration(event.calibration);
-          emit('calibrated', event);
-        },
-        fallback: (event) => {
-          if (this.#fallbackListeners.size > 0) emit('fallback', event);
-          else warnOfFallback(event);
-        },
-      },
-    });
+    this.body = new Body<Method>({ ...(modelUrl !== undefined && { networks: learnedAt(modelUrl) }), ...bodyOptions });
+    this.body.addEventListener('calibrated', ({ calibration }) => this.#avatar?.setCalibration(calibration));
     this.object.name = 'body';
     this.object.visible = false;
     if (avatar !== null) this.#own(avatar);
@@ -168,35 +142,32 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
   }
 
   /**
-   * Draws another avatar from the next frame on and disposes of the one before. A tracker that was disposed of disposes
-   * of it at once. Throws an Error for an avatar of another tracker.
+   * Draws another avatar from the next frame on and disposes of the one before, unless `disposeAvatar` is false. Body,
+   * measures and session continue. A tracker that was disposed of disposes of it at once. Throws an Error for an avatar
+   * of another tracker.
    */
   setAvatar(avatar: Avatar & Shown): void {
     assertAvatar(avatar);
     if (this.#disposed) {
-      avatar.dispose();
+      if (this.#disposesAvatars) avatar.dispose();
       return;
     }
-    this.#disposeOfAvatar();
+    this.#releaseAvatar();
     this.#avatar = avatar;
     this.#own(avatar);
     avatar.setFirstPerson(this.#firstPerson);
   }
 
-  override addEventListener<T extends keyof BodyEvents>(
-    type: T,
-    listener: EventListener<BodyEvents[T], T, this>,
+  addEventListener<Name extends keyof BodyEvents>(
+    type: Name,
+    listener: (event: BodyEvent<Name>) => void,
+    options?: AddEventListenerOptions,
   ): void {
-    if (type === 'fallback') this.#fallbackListeners.add(listener);
-    super.addEventListener(type, listener);
+    this.body.addEventListener(type, listener, options);
   }
 
-  override removeEventListener<T extends keyof BodyEvents>(
-    type: T,
-    listener: EventListener<BodyEvents[T], T, this>,
-  ): void {
-    if (type === 'fallback') this.#fallbackListeners.delete(listener);
-    super.removeEventListener(type, listener);
+  removeEventListener<Name extends keyof BodyEvents>(type: Name, listener: (event: BodyEvent<Name>) => void): void {
+    this.body.removeEventListener(type, listener);
   }
 
   /**
@@ -213,12 +184,12 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
   }
 
   /** The estimator in use: 'ik' while a network loads, and after it failed. */
-  get estimator(): EstimatorName {
+  get estimator(): DefaultMethod | Method {
     return this.body.estimator;
   }
 
   /** Selects the estimator. Resolves when it is in use, or after the event `fallback` because it is unavailable. */
-  setEstimator(estimator: EstimatorName): Promise<void> {
+  setEstimator(estimator: DefaultMethod | Method): Promise<void> {
     return this.body.setEstimator(estimator);
   }
 
@@ -228,17 +199,24 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
   }
 
   /**
-   * Solves and draws one animation frame; takes the arguments of the `setAnimationLoop` callback. Without a session the
-   * avatar is hidden. Call it before the first await of the callback, or it throws an InvalidStateError.
+   * Solves and draws one animation frame; takes the arguments of the `setAnimationLoop` callback. `change` receives its
+   * head and hands and returns those to draw, floor frame [m]. Without a session the avatar is hidden. Call it before
+   * the first await of the callback, or it throws an InvalidStateError.
    */
-  update(timeMs: number, frame: XRFrame | null | undefined): void {
+  update(
+    timeMs: number,
+    frame: XRFrame | null | undefined,
+    change: (tracked: TrackingFrame) => TrackingFrame = unchanged,
+  ): void {
     if (this.#isDisposed()) return;
     const time = this.body.tick(timeMs);
     this.#followSession();
     // The renderer may still have the space of the session before: the first frame starts the tracking.
     if (!frame || !this.#tracking?.start()) return;
-    const tracked = this.read(frame, time);
-    this.body.solve(tracked);
+    const read = this.read(frame, time);
+    const tracked = read && change(read);
+    if (tracked === read) this.body.solve(tracked);
+    else this.body.update(tracked);
     this.#show(tracked, null);
   }
 
@@ -263,8 +241,9 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
 
   /**
    * Returns head and hands of a session's frame, floor frame [m], at the `time` [s] of `body.tick`; null while the head
-   * is not seen. A page that needs or changes them before the body is solved calls `read`, `body.solve` and `draw`
-   * instead of `update`.
+   * is not seen. A page that measures the steps of a frame calls `read`, `body.solve` and `draw` instead of `update`.
+   *
+   * @internal
    */
   read(frame: XRFrame, time: number): TrackingFrame | null {
     this.#followSession();
@@ -278,7 +257,11 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
     return tracked && trackers ? { ...tracked, trackers } : tracked;
   }
 
-  /** Poses the avatar by the body's newest pose, at a time [s]. Without a pose nothing changes. */
+  /**
+   * Poses the avatar by the body's newest pose, at a time [s]. Without a pose nothing changes.
+   *
+   * @internal
+   */
   draw(time: number): void {
     const { pose } = this.body;
     const avatar = this.#avatar;
@@ -298,14 +281,14 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
   }
 
   /**
-   * Removes the listeners and disposes of the avatar. Later calls of `update` have no effect, and the first one warns.
-   * Resolves when every network that was loaded for this body is released.
+   * Ends the events and disposes of the avatar, unless `disposeAvatar` is false. Later calls of `update` have no
+   * effect, and the first one warns. Resolves when every network that was loaded for this body is released.
    */
   dispose(): Promise<void> {
     this.#disposed = true;
     this.#endTracking();
     this.object.removeFromParent();
-    this.#disposeOfAvatar();
+    this.#releaseAvatar();
     return this.body.dispose();
   }
 
@@ -315,10 +298,18 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
     this.object.add(avatar.object);
   }
 
-  #disposeOfAvatar(): void {
-    if (!this.#avatar) return;
-    this.#avatar.dispose();
-    ownedAvatars.set(this.#avatar, 'disposed');
+  /** Disposes of the avatar, or returns it to the page as it was. */
+  #releaseAvatar(): void {
+    const avatar = this.#avatar;
+    if (!avatar) return;
+    if (this.#disposesAvatars) {
+      avatar.dispose();
+      ownedAvatars.set(avatar, 'disposed');
+      return;
+    }
+    avatar.object.removeFromParent();
+    avatar.setFirstPerson(false);
+    ownedAvatars.delete(avatar);
   }
 
   /** Returns whether the tracker was disposed of; warns once if so. */
@@ -347,6 +338,7 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
         drawing: xr,
         bodyReader: this.deviceBody ? new DeviceBodyReader() : null,
         pointing: this.#pointing?.(session) ?? null,
+        gripOffsets: () => this.body.userCalibration.gripOffsets,
         onStart: () => this.body.startSession(),
         onDiscontinuity: () => this.body.discontinuity(),
         onEnd: () => this.#endTracking(),
@@ -373,6 +365,14 @@ export class BodyTracker<Shown extends Avatar | null = Avatar> extends EventDisp
   }
 }
 
-const noRuntimeError = new Error(
-  'modelUrl: only the learned network runs without a runtime. Pass networks: onnxNetworks() of threepoint/onnx for the others.',
-);
+const unchanged = (tracked: TrackingFrame): TrackingFrame => tracked;
+
+/** Returns a loader of the learned network with another contract. */
+const learnedAt =
+  (modelUrl: string | URL): LoadNetwork =>
+  async (name) => {
+    if (name === 'learned') return loadLearned({ modelUrl });
+    throw new Error(
+      'modelUrl: only the learned network runs without a runtime. Pass networks: onnxNetworks() of threepoint/onnx for the others.',
+    );
+  };

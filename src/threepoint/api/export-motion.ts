@@ -1,8 +1,11 @@
+import type { PaperMethod } from '../core/estimation/pose-estimator';
 import type { Replayable } from '../core/tracking/recording';
 import { assertOptions, optionNames } from './assert-options';
 import type { MotionFile, MotionFileOptions } from './motion-file';
 
-export type ExportMotionOptions = Omit<MotionFileOptions, 'networks'> & Partial<Pick<MotionFileOptions, 'networks'>>;
+export interface ExportMotionOptions<Method extends PaperMethod = never>
+  extends Omit<MotionFileOptions<Method>, 'networks'>,
+    Partial<Pick<MotionFileOptions<Method>, 'networks'>> {}
 
 const exportOptions = optionNames<ExportMotionOptions>({
   format: true,
@@ -24,7 +27,10 @@ const exportOptions = optionNames<ExportMotionOptions>({
  * const { parts, type, extension } = await exportMotion(recording, { format: 'bvh' });
  * const file = new File(parts, `motion.${extension}`, { type });
  */
-export async function exportMotion(recording: Replayable, options: ExportMotionOptions): Promise<MotionFile> {
+export async function exportMotion<Method extends PaperMethod = never>(
+  recording: Replayable,
+  options: ExportMotionOptions<Method>,
+): Promise<MotionFile> {
   assertOptions('exportMotion', options, exportOptions);
   // Loaded on demand: pages that export nothing load neither the writers nor a network.
   const { writeMotionFile } = await import('./write-motion-file');

@@ -18,6 +18,7 @@ export interface InferenceProfiler {
 export function withProfiler(regressor: PoseRegressor, profiler: InferenceProfiler): PoseRegressor {
   return {
     contract: regressor.contract,
+    methods: regressor.methods,
     // The provider changes when a graphics device is lost.
     get provider() {
       return regressor.provider;

@@ -1,9 +1,8 @@
-import contract from '../../../public/models/learned.json' with { type: 'json' };
 import type { NetworkName } from '../core/estimation/estimators';
-import { createPlainRegressor, weightsOf } from '../core/estimation/networks/learned-network';
-import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
+import { createPlainRegressor } from '../core/estimation/networks/learned-network';
+import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import { assertOptions } from './assert-options';
-import { readBundledWeights } from './bundled/weights';
+import { readBundledNetwork } from './bundled/weights';
 
 export interface LoadLearnedOptions {
   /**
@@ -29,8 +28,8 @@ export async function loadLearned(options: LoadLearnedOptions = {}): Promise<Pos
     const { loadPlainRegressor } = await import('../onnx/load-plain-regressor');
     return loadPlainRegressor(String(modelUrl), onProgress);
   }
-  const own = contract as unknown as ModelContract;
-  return createPlainRegressor(own, await readBundledWeights(weightsOf(own), onProgress));
+  const { contract, weights } = await readBundledNetwork(onProgress);
+  return createPlainRegressor(contract, weights);
 }
 
 /** Loads the learned network without a runtime; rejects for the paper's network. */

@@ -1,10 +1,9 @@
 import type { Calibration } from '../core/body/calibration';
-import type { NetworkName } from '../core/estimation/estimators';
-import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
-import type { EstimatorName } from '../core/estimation/pose-estimator';
+import type { DefaultMethod, PaperMethod } from '../core/estimation/pose-estimator';
 import type { Motion } from '../core/motion/motion';
 import type { Work } from '../core/motion/work';
 import type { BvhOptions } from '../core/motion/write-bvh';
+import type { LoadNetwork } from './body';
 import type { WorkOptions } from './run-work';
 
 /** The formats that `exportMotion` writes without a MotionWriter. */
@@ -27,12 +26,12 @@ export interface MotionWriter {
 }
 
 /** The options of an export; see `exportMotion`. */
-export interface MotionFileOptions extends WorkOptions, BvhOptions {
+export interface MotionFileOptions<Method extends PaperMethod = PaperMethod> extends WorkOptions, BvhOptions {
   readonly format: MotionFormat | MotionWriter;
   /** The estimator of the body between the points; default: 'learned'. */
-  readonly estimator?: EstimatorName;
-  /** Loads a network by name, as the option of a BodySolver does. It is disposed of at the end. */
-  readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
+  readonly estimator?: DefaultMethod | NoInfer<Method>;
+  /** Loads the networks, as the option of a Body does. They are disposed of at the end. */
+  readonly networks: LoadNetwork<Method>;
   /** The person's measures [m]. Default: the recording's, else estimated from the head height in its first frame. */
   readonly calibration?: Calibration | undefined;
 }

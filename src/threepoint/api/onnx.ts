@@ -1,11 +1,13 @@
 // "threepoint/onnx": runs the networks in onnxruntime-web, on WebAssembly or WebGPU, on the page's thread or in a
 // worker.
 import type { NetworkName } from '../core/estimation/estimators';
-import type { PoseRegressor } from '../core/estimation/networks/pose-regressor';
+import type { PaperMethod } from '../core/estimation/pose-estimator';
 import { loadRegressor } from '../onnx/load-regressor';
 import type { ExecutionProvider, WasmPaths } from '../onnx/session';
 import { assertOptions, optionNames } from './assert-options';
+import type { LoadNetwork } from './body';
 
+export type { PaperMethod } from '../core/estimation/pose-estimator';
 export type { ExecutionProvider, WasmPaths } from '../onnx/session';
 
 export interface OnnxNetworksOptions {
@@ -42,14 +44,15 @@ const onnxOptions = optionNames<OnnxNetworksOptions>({
 });
 
 /**
- * Returns a loader of networks that run in onnxruntime-web, for the option `networks` of a Body or BodyTracker. Their
- * results are one frame late. Throws a TypeError for an unknown option, or if `modelUrl` is not a function.
+ * Returns a loader of networks that run in onnxruntime-web, for the option `networks` of a Body or BodyTracker. They
+ * bring the methods of the paper. Their results are one frame late. Throws a TypeError for an unknown option, or if
+ * `modelUrl` is not a function.
  *
  * @example
  * const networks = onnxNetworks({ modelUrl: (name) => `/models/${name}.json`, wasmPaths: '/ort/' });
  * const body = new Body({ estimator: 'paper', networks });
  */
-export function onnxNetworks(options: OnnxNetworksOptions): (name: NetworkName) => Promise<PoseRegressor> {
+export function onnxNetworks(options: OnnxNetworksOptions): LoadNetwork<PaperMethod> {
   assertOptions('onnxNetworks', options, onnxOptions);
   const { modelUrl, ...others } = options;
   if (typeof modelUrl !== 'function') {
@@ -57,6 +60,7 @@ export function onnxNetworks(options: OnnxNetworksOptions): (name: NetworkName) 
       "modelUrl is not a function. Pass one that returns a contract's address: (name) => '/models/' + name + '.json'.",
     );
   }
-  return (name) => loadRegressor(String(modelUrl(name)), others);
+  const load = (name: NetworkName) => loadRegressor(String(modelUrl(name)), others);
+  return Object.assign(load, { methods: ['paper', 'paper-published'] as const });
 }
 export { createInferenceWorker } from '../onnx/create-inference-worker';

@@ -5,11 +5,9 @@ import { copyPose, invertTransform, makePose, type Pose, type Transform, transfo
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { TrackedSession } from '../xr/tracked-session';
 import { assertOptions } from './assert-options';
-import { Body, type BodyOptions } from './body';
-import { type BodyEvents, bodyOptions as solverOptions } from './body-solver';
-import { warnOfFallback } from './warnings';
+import { Body, type BodyOptions, bodyOptions as solverOptions } from './body';
 
-export interface InstallBodyTrackingOptions extends Omit<BodyOptions, 'events' | 'clock'> {
+export interface InstallBodyTrackingOptions extends BodyOptions {
   /**
    * Called with the reason when a session has no body because it has no floor, or when the estimator is unavailable and
    * inverse kinematics replaces it. Default: a warning on the console.
@@ -299,7 +297,7 @@ function warnOfMissingBody(reason: string): void {
 }
 
 /** The names of the options that are passed on to the body. */
-const trackingOptions = ['onWarning', ...solverOptions.filter((name) => name !== 'events' && name !== 'clock')];
+const trackingOptions = ['onWarning', ...solverOptions];
 
 /**
  * Adds `frame.body` to the sessions that request the feature “body-tracking”: the device's own body, else one that is
@@ -320,9 +318,13 @@ export function installBodyTracking(options: InstallBodyTrackingOptions = {}): (
   }
   assertOptions('installBodyTracking', options, trackingOptions);
   const { onWarning, ...bodyOptions } = options;
-  const fallback = (event: BodyEvents['fallback']): void =>
-    onWarning ? onWarning(event.reason) : warnOfFallback(event, 'onWarning');
-  const body = new Body({ ...bodyOptions, events: { fallback } });
+  const body = new Body(bodyOptions);
+  if (onWarning) {
+    body.addEventListener('fallback', (event) => {
+      event.preventDefault();
+      onWarning(event.reason);
+    });
+  }
   const warn = onWarning ?? warnOfMissingBody;
   const jointNames = [...new XRBodyPoser(body.calibration).names];
   const bodies = new WeakMap<XRSession, SessionBody>();

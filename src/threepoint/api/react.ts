@@ -15,9 +15,8 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from '../core/body/calibration';
 import type { BoneMap } from '../core/humanoid/bones';
 import { type AvatarSource, loadAvatar } from './avatar-source';
-import type { BodyEvents } from './body-solver';
+import type { BodyEvent, BodyEvents } from './body-events';
 import { BodyTracker, type BodyTrackerOptions } from './body-tracker';
-import { warnOfFallback } from './warnings';
 
 /** The prop that receives each event of a tracker. */
 const callbackNames = {
@@ -35,9 +34,9 @@ const callbackNames = {
 
 type EventName = keyof typeof callbackNames;
 
-/** Callbacks of a tracker's events, each with the event's fields; the newest props are called. */
+/** Callbacks of a tracker's events; the newest props are called. With `onFallback` the console has no warning. */
 export type SelfAvatarCallbacks = {
-  readonly [Name in EventName as (typeof callbackNames)[Name]]?: (event: BodyEvents[Name]) => void;
+  readonly [Name in EventName as (typeof callbackNames)[Name]]?: (event: BodyEvent<Name>) => void;
 };
 
 export interface LoadedAvatarProps {
@@ -191,13 +190,13 @@ function optionsOf(props: SelfAvatarProps): Omit<BodyTrackerOptions, 'avatar'> {
   return Object.fromEntries(Object.entries(others).filter(([name]) => !callbacks.includes(name)));
 }
 
-/** Passes the tracker's events to the newest callbacks. Without `onFallback` a warning states what failed. */
+/** Passes the tracker's events to the newest callbacks. */
 function listen(tracker: BodyTracker, props: RefObject<SelfAvatarProps>): void {
   for (const type of Object.keys(callbackNames) as EventName[]) {
     tracker.addEventListener(type, (event) => {
-      const callback = props.current[callbackNames[type]] as ((event: unknown) => void) | undefined;
-      if (callback) callback(event);
-      else if ('reason' in event) warnOfFallback(event, 'onFallback');
+      const callback = props.current[callbackNames[type]] as ((event: Event) => void) | undefined;
+      if (callback) event.preventDefault();
+      callback?.(event);
     });
   }
 }

@@ -1,8 +1,9 @@
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
+import type { PaperMethod } from '../core/estimation/pose-estimator';
 import { type Replayable, sampleRecording } from '../core/tracking/recording';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import type { BodySolver } from './body-solver';
+import type { Body } from './body';
 
 /** The state of a replay that may move a body. */
 export interface ReplayState {
@@ -29,7 +30,7 @@ function* warmUpFrames(recording: Replayable, seconds: number, time: number): Ge
   }
 }
 
-type DrivenBody = Pick<BodySolver, 'solve' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
+type DrivenBody = Pick<Body<PaperMethod>, 'solve' | 'warmUp' | 'discontinuity' | 'pose' | 'estimator'>;
 
 /**
  * Drives a body by a replay. While the replay is paused, the body's time stands still and its state does not change.

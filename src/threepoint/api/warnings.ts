@@ -26,15 +26,15 @@ function warnOnce(about: object, sentence: string): void {
   console.warn(`threepoint: ${sentence}`);
 }
 
-/**
- * Warns that inverse kinematics replaces the selected estimator, for a page without a handler. `handler`: the handler's
- * name.
- */
-export function warnOfFallback(
-  { estimator, reason }: { readonly estimator: EstimatorName; readonly reason: string },
-  handler = 'fallback',
-): void {
+/** Warns that inverse kinematics replaces the selected estimator, for a page that does not report it. */
+export function warnOfFallback({
+  estimator,
+  reason,
+}: {
+  readonly estimator: EstimatorName;
+  readonly reason: string;
+}): void {
   console.warn(
-    `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. Handle “${handler}” to report it yourself.`,
+    `threepoint: inverse kinematics draws the body instead of “${estimator}”: ${reason}. To report it yourself, prevent the default of “fallback”.`,
   );
 }

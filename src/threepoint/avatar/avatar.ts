@@ -1,4 +1,4 @@
-import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
+import { type VRM, VRMFirstPerson, type VRMHumanBoneName, VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
@@ -8,14 +8,16 @@ import { createJointPoses, forwardKinematics } from '../core/body/forward-kinema
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
 import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
-import { jointNames } from '../core/body/joints';
+import { type JointName, jointNames } from '../core/body/joints';
 import { averageSkeleton, type Skeleton } from '../core/body/skeleton';
 import type { GaitPoints } from '../core/estimation/gait/gait-features';
+import type { BoneName } from '../core/humanoid/bones';
 import { identity, quat, rotate } from '../core/math/quat';
 import { type Side, sides } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { finishWork } from '../core/motion/work';
 import { type Mutable, recordOf } from '../core/records';
+import { Attachments } from './attachments';
 import { betweenFrames, type Steps } from './between-frames';
 import { Face } from './face';
 import { HandFingers } from './hands/hand-fingers';
@@ -45,6 +47,8 @@ import { meshesOf } from './scene-meshes';
  */
 export interface Avatar {
   readonly object: Object3D;
+  /** The loaded VRM; of another humanoid, one that was made from its bones. Poses move its bones and its face. */
+  readonly vrm: VRM;
   /** The height of the head's top when the body stands upright [m]. */
   readonly height: number;
   /** What was assumed of its file, a sentence each. */
@@ -59,22 +63,46 @@ export interface Avatar {
   setFirstPerson(on: boolean): void;
   setUpperBodyOnly(on: boolean): void;
   /**
+   * Returns the node of a bone by its name in VRM, as drawn; null: the rig has none. Its matrix contains the stretch to
+   * the measures: `attach` carries objects unscaled.
+   */
+  getBone(name: BoneName): Object3D | null;
+  /**
+   * Carries an object along with a joint, unscaled; `object.removeFromParent()` takes it off. In a hand its axes are
+   * the wrist's: −Z to the knuckles, +Y out of the back of the hand. Elsewhere they are the body's in a T-pose: −Z
+   * ahead, +Y up. It is hidden with its joint, and the page disposes of it.
+   *
+   * @example
+   * avatar.attach(sword, 'rightHand');
+   */
+  attach(object: Object3D, joint: JointName): void;
+  /**
    * Recolours the clothes of the project's own bodies; null: in their own colours. Other avatars keep theirs. Unknown
    * names change nothing.
+   *
+   * @internal
    */
   setPalette(name: string | null): void;
-  /** Recolours the skin of the project's own people; null: unchanged. */
+  /**
+   * Recolours the skin of the project's own people; null: unchanged.
+   *
+   * @internal
+   */
   setSkinTone(tone: SkinTone | null): void;
   /**
    * Draws the clothes of the project's own people with a weave (`weaveCloth`), which is visible from about 1.2 m on;
    * null: smooth, as at first. It is computed in the program that draws them, and costs time for each pixel. Other
    * avatars stay unchanged.
+   *
+   * @internal
    */
   setClothWeave(weave: ClothWeave | null): void;
   /**
    * Draws the body with fewer triangles in shadows, and for cameras more than 3.5 m from its hips, where the difference
    * is less than a pixel of a headset. Works between frames. Call it before the first `setPose`: edges stay where the
    * body bends. simplifier: the `MeshoptSimplifier` of meshoptimizer, once it is ready.
+   *
+   * @internal
    */
   simplifyAtDistance(simplifier: MeshSimplifier): Promise<void>;
   /** Sets the opacity: 1 is solid, less a ghost that objects behind it shine through. */
@@ -101,9 +129,15 @@ export interface Avatar {
   /**
    * Returns the geometry of the drawn hand [m]; null: the rig lacks a finger bone. The object is the same until the
    * calibration changes.
+   *
+   * @internal
    */
   handGeometry(side: Side): HandGeometry | null;
-  /** Returns the drawn fingertips of the rig, floor frame [m], in new objects for tools. */
+  /**
+   * Returns the drawn fingertips of the rig, floor frame [m], in new objects for tools.
+   *
+   * @internal
+   */
   fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>>;
   /**
    * Returns the drawn joint positions of the rig's bones, floor frame [m]. The next frame overwrites the object: copy
@@ -128,7 +162,7 @@ interface AvatarParts extends Pick<LoadedAvatar, 'vrm' | 'notes'> {
 }
 
 /** Creates an avatar from a file; a loaded file can be used once. */
-function* makeAvatar({ vrm, notes }: LoadedAvatar): Steps<Avatar> {
+function* makeAvatar({ vrm, notes, gait }: LoadedAvatar): Steps<Avatar> {
   const object = new Group();
   object.name = 'avatar';
   object.add(vrm.scene);
@@ -138,7 +172,7 @@ function* makeAvatar({ vrm, notes }: LoadedAvatar): Steps<Avatar> {
   const rig = new Rig(vrm);
   yield* tieLooseParts(vrm, rig);
   const arms = new ArmHelperJoints(rig);
-  const legs = new Legs(rig);
+  const legs = new Legs(rig, gait);
   yield* spreadLimbs(vrm.scene, [...arms.limbs(), ...legs.limbs()]);
   // The first-person meshes are cut from copies of meshes with a head, after the skin weights were shared.
   yield* setUpFirstPerson(vrm);
@@ -166,8 +200,9 @@ function* setUpFirstPerson({ firstPerson, humanoid, scene }: VRM): Steps<void> {
 class VrmAvatar implements Avatar {
   readonly object: Group;
   readonly notes: readonly string[];
-  private readonly vrm: LoadedAvatar['vrm'];
+  readonly vrm: VRM;
   private readonly rig: Rig;
+  private readonly attachments: Attachments;
   private readonly idle: IdleMotion;
   private readonly trunk: RigTrunk;
   private readonly trunkShape: TrunkShape;
@@ -198,6 +233,7 @@ class VrmAvatar implements Avatar {
     this.notes = notes;
     this.object = object;
     this.rig = rig;
+    this.attachments = new Attachments(object, rig);
     this.arms = arms;
     this.trunk = new RigTrunk(this.rig);
     this.trunkShape = new TrunkShape(vrm.scene, this.rig);
@@ -243,6 +279,7 @@ class VrmAvatar implements Avatar {
     if (this.meshes.setVisibleParts(shown)) this.rig.forgetJoints();
     if (pose.body) this.applyBody(pose, pose.body, deltaSeconds);
     else this.applyHands(pose);
+    this.attachments.update();
     for (const side of sides) {
       if (pose.fingers) this.setFingers(side, pose.fingers[side]);
       this.fingers[side].update(deltaSeconds);
@@ -324,6 +361,14 @@ class VrmAvatar implements Avatar {
 
   setUpperBodyOnly(on: boolean): void {
     this.meshes.setUpperBodyOnly(on);
+  }
+
+  getBone(name: BoneName): Object3D | null {
+    return this.vrm.humanoid.getRawBoneNode(name as VRMHumanBoneName);
+  }
+
+  attach(object: Object3D, joint: JointName): void {
+    this.attachments.attach(object, joint);
   }
 
   setPalette(name: string | null): void {

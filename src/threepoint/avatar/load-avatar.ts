@@ -2,6 +2,7 @@ import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import { BufferAttribute, type InterleavedBufferAttribute, type Object3D, type TypedArray } from 'three';
 import { type GLTF, GLTFLoader, type GLTFLoaderPlugin, type GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
+import type { GaitNetwork } from '../core/estimation/gait/gait';
 import type { BoneMap } from '../core/humanoid/bones';
 import { betweenFrames, type Steps } from './between-frames';
 import { blobBufferViews } from './file/blob-buffer-views';
@@ -21,6 +22,8 @@ export interface LoadedAvatar {
   readonly vrm: VRM;
   /** What was assumed of the file, a sentence each. */
   readonly notes: readonly string[];
+  /** The network that moves the legs. */
+  readonly gait: GaitNetwork;
   /** The index of each object's node in the file. */
   readonly nodeIndices: ReadonlyMap<Object3D, number>;
 }
@@ -52,13 +55,17 @@ export async function parseAvatar(
 export async function parseChecked(checked: Omit<CheckedAvatar, 'hash'>, options: ParseOptions = {}) {
   const { name } = checked;
   try {
-    const { gltf, own } = await readScene(checked, options);
+    // The network has as many bytes as the rest of this code: it loads while the file is read.
+    const [{ gltf, own }, { shippedGait: gait }] = await Promise.all([
+      readScene(checked, options),
+      import('../core/estimation/gait/shipped-gait'),
+    ]);
     // Files without a humanoid of their own need the matcher, which others do not load.
     const { vrm, notes } = own
       ? { vrm: own, notes: [] }
       : (await import('./humanoid/create-humanoid')).createHumanoid(gltf.scene, name, options.bones);
     settleRest(vrm, name);
-    return { name, vrm, notes, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
+    return { name, vrm, notes, gait, nodeIndices: nodeIndicesOf(gltf) } satisfies LoadedAvatar;
   } catch (error) {
     // three-vrm reads its extensions without a check.
     if (!(error instanceof TypeError || error instanceof RangeError)) throw error;

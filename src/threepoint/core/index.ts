@@ -20,7 +20,7 @@ export {
   skinToneOf,
   skinTones,
 } from './body/built-in-bodies';
-export type { Calibration, MeasureRange } from './body/calibration';
+export type { Calibration, GripOffset, GripOffsets, MeasureRange } from './body/calibration';
 export {
   armSpanFromFingertipSpan,
   armSpanRange,
@@ -30,6 +30,7 @@ export {
   eyeHeightFromStature,
   fingertipSpanFromArmSpan,
   forearmRange,
+  largestGripOffset,
   sameMeasures,
   statureFromEyeHeight,
   statureRange,
@@ -58,7 +59,7 @@ export { firstLine, reasonOf } from './errors/reasons';
 export { TransientError } from './errors/transient-error';
 export { estimateRecording } from './estimation/estimate-recording';
 export { createEstimator, networkOf } from './estimation/estimators';
-export type { EstimatorName, PoseEstimator, ThreePointName } from './estimation/pose-estimator';
+export type { EstimatorName, PaperMethod, PoseEstimator, ThreePointName } from './estimation/pose-estimator';
 export { estimatorNames, threePointNames } from './estimation/pose-estimator';
 export { nameOfAddress } from './files';
 export { type BoneMap, type BoneName, boneNames, neededBones, vrmFingerNames } from './humanoid/bones';

@@ -70,7 +70,11 @@ export async function startRegressor(
     });
   // WebAssembly needs no graphics device, and the loaded bundle contains it.
   const openWasm = () => open('wasm', 'webgpu').catch(() => open('wasm'));
-  return new SessionRegressor(contract, first, openWasm, onProviderFallback);
+  const regressor = new SessionRegressor(contract, first, openWasm, onProviderFallback);
+  if (contract.name === 'paper') {
+    regressor.methods = (await import('../core/estimation/methods/paper-methods')).paperMethods(regressor);
+  }
+  return regressor;
 }
 
 /** Runs an open session once; throws an Error if it does not match its contract. */

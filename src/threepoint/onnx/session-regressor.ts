@@ -1,5 +1,6 @@
 import { reasonOf } from '../core/errors/reasons';
-import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
+import type { EstimatorFactory, ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
+import type { PaperMethod } from '../core/estimation/pose-estimator';
 import { withFileName } from './model-files';
 import type { InferenceSession } from './session';
 
@@ -22,6 +23,8 @@ async function lossOf({ lost }: InferenceSession): Promise<string | null> {
 /** Runs a network in a session of the runtime: on a graphics device, and where that fails in WebAssembly. */
 export class SessionRegressor implements PoseRegressor {
   readonly contract: ModelContract;
+  /** The methods of the paper, with the paper's network. */
+  methods: Readonly<Record<PaperMethod, EstimatorFactory>> | undefined;
   readonly #openWasm: () => Promise<InferenceSession>;
   readonly #onTakeover: ((reason: string) => void) | undefined;
   #session: InferenceSession;

@@ -1,3 +1,4 @@
+import type { GripOffsets } from '../core/body/calibration';
 import { sideSign } from '../core/body/skeleton';
 import type { Frame, Pose } from '../core/math/pose';
 import { conjugate, fromAxes, multiply, type Quat, rotate } from '../core/math/quat';
@@ -22,7 +23,9 @@ const degrees = (value: number): number => (value * Math.PI) / 180;
 /**
  * The fits by the profile names of the WebXR input profiles registry. The fist is the same for all; the leans are our
  * estimates from the angle between grip and target ray that the runtimes report (Touch: 45°) with the hand pointing
- * along the ray.
+ * along the ray. The registry gives a Galaxy XR controller the parts of a Touch, and has no profile of a PlayStation
+ * VR2 Sense, which headsets report as generic: both are held like a Touch. An MX Ink is a pen: thumb and finger hold it
+ * before the knuckles, with its tip ahead. No source states its grip, which is our estimate. `GripOffset` corrects any.
  */
 const fits: Readonly<Record<string, HandleFit>> = {
   'meta-quest-touch-plus': { ahead: 0.08, below: 0.025, lean: degrees(45) },
@@ -30,6 +33,8 @@ const fits: Readonly<Record<string, HandleFit>> = {
   'oculus-touch-v3': { ahead: 0.08, below: 0.025, lean: degrees(45) },
   'oculus-touch-v2': { ahead: 0.08, below: 0.025, lean: degrees(45) },
   'oculus-touch': { ahead: 0.08, below: 0.025, lean: degrees(40) },
+  'samsung-galaxyxr': { ahead: 0.08, below: 0.025, lean: degrees(45) },
+  'logitech-mx-ink': { ahead: 0.12, below: 0.045, lean: degrees(70) },
   'pico-4': { ahead: 0.08, below: 0.025, lean: degrees(42) },
   'pico-4u': { ahead: 0.08, below: 0.025, lean: degrees(42) },
   'bytedance-pico-4': { ahead: 0.08, below: 0.025, lean: degrees(42) },
@@ -51,6 +56,16 @@ export const bareHandFit: HandleFit = { ahead: 0.06, below: 0.02, lean: 0 };
 
 /** The profiles of bare hands: `generic-hand`, `generic-hand-select`, `oculus-hand` and others. */
 const bareHandProfile = /(^|-)hand(-|$)/;
+
+/** Returns the name by which offsets are stored: the first known profile of an input source, else its first. */
+export const gripDevice = (profiles: readonly string[]): string =>
+  profiles.find((profile) => fits[profile]) ?? profiles[0] ?? 'unknown';
+
+/** Returns the fit with the user's offset for this device; the same object without one. */
+export function adjustedFit(fit: HandleFit, profiles: readonly string[], offsets: GripOffsets): HandleFit {
+  const offset = offsets[gripDevice(profiles)];
+  return offset ? { ...fit, ahead: fit.ahead + offset.ahead, lean: fit.lean + offset.lean } : fit;
+}
 
 /** Returns the fit of the first known profile of an input source. */
 export function handleFit(profiles: readonly string[]): HandleFit {

@@ -1,9 +1,10 @@
+import type { GripOffsets } from '../core/body/calibration';
 import { type HandShape, handShapeFromClosing, makeHandShape } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
 import type { TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
-import { bareHandFit, handleFit, wristFromGrip } from './grip-offsets';
+import { adjustedFit, bareHandFit, type HandleFit, handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
 import type { InputFrame, Pointing, PointingHand } from './pointing';
 import { SourceChoice } from './source-choice';
@@ -58,6 +59,9 @@ export class InputReader {
   readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
   /** Reads what the sources point at and press; null: it is not read. */
   readonly pointing: Pointing | null;
+  /** The user's offsets, and the fits with them; other offsets are another object. */
+  #offsets: GripOffsets = {};
+  #fits = new WeakMap<XRInputSource, HandleFit>();
   readonly #session: XRSession;
   readonly #held = { controller: false, hand: false };
   readonly #handReaders = { left: new HandReader('left'), right: new HandReader('right') };
@@ -166,7 +170,23 @@ export class InputReader {
     const grip = frame.getPose(source.gripSpace, space);
     if (!grip) return null;
     const tracked = toTrackedPose(grip);
-    return tracked && { ...wristFromGrip(tracked, side, fitOf(source)), tracking: tracked.tracking };
+    return tracked && { ...wristFromGrip(tracked, side, this.#fitOf(source)), tracking: tracked.tracking };
+  }
+
+  /** Sets the user's offsets of controllers. */
+  setGripOffsets(offsets: GripOffsets): void {
+    if (offsets === this.#offsets) return;
+    this.#offsets = offsets;
+    this.#fits = new WeakMap();
+  }
+
+  #fitOf(source: XRInputSource): HandleFit {
+    const known = this.#fits.get(source);
+    if (known) return known;
+    const base = fitOf(source);
+    const fit = base === bareHandFit ? base : adjustedFit(base, source.profiles, this.#offsets);
+    this.#fits.set(source, fit);
+    return fit;
   }
 
   /** Returns the pinch of a bare hand, 0 to 1; NaN: its fingers are not seen. */

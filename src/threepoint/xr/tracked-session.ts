@@ -1,13 +1,13 @@
+import type { GripOffsets } from '../core/body/calibration';
 import { makePose, type Pose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, identity, multiply, type Quat, rotate, setQuat } from '../core/math/quat';
 import { setVec3, subtract, up, type Vec3 } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { TrackingGate } from '../core/tracking/tracking-gate';
 import type { DeviceBodyReader } from './device-body-reader';
-import { InputReader } from './input-reader';
+import type { InputReader } from './input-reader';
 import type { Pointing } from './pointing';
-import { toTrackedPose } from './tracked-pose';
+import { TrackingReader } from './tracking-reader';
 
 /**
  * The reference space that a renderer draws its session in (`renderer.xr` of three.js); setting null restores the
@@ -18,6 +18,8 @@ export interface DrawingSpace {
   setReferenceSpace(space: XRReferenceSpace | null): void;
 }
 
+const noOffsets: GripOffsets = {};
+
 interface TrackedSessionOptions {
   readonly session: XRSession;
   readonly drawing: DrawingSpace;
@@ -25,6 +27,8 @@ interface TrackedSessionOptions {
   readonly bodyReader?: DeviceBodyReader | null;
   /** Reads what the session's input sources point at and press; null: it is not read. */
   readonly pointing?: Pointing | null;
+  /** Returns the user's corrections of how they hold controllers; called in every frame. Default: none. */
+  gripOffsets?(): GripOffsets | undefined;
   /** Called when the first frame is about to be read. */
   onStart?(): void;
   /** Called when the floor lies elsewhere from the next frame on: by the device, `recentre` or `turn`. */
@@ -43,7 +47,7 @@ export class TrackedSession {
   readonly #options: TrackedSessionOptions;
   readonly #session: XRSession;
   readonly #drawing: DrawingSpace;
-  readonly #gate = new TrackingGate({ assumesTracked: true });
+  readonly #reader: TrackingReader;
   /** The renderer's own space; null before the session started. */
   #own: XRReferenceSpace | null = null;
   /** The space that is tracked in; null before the session started. */
@@ -70,7 +74,8 @@ export class TrackedSession {
     this.#session = options.session;
     this.#drawing = options.drawing;
     this.bodyReader = options.bodyReader ?? null;
-    this.inputs = new InputReader(options.session, options.pointing);
+    this.#reader = new TrackingReader(options.session, options.pointing);
+    this.inputs = this.#reader.inputs;
     options.session.addEventListener('end', this.#onEnd);
   }
 
@@ -102,15 +107,10 @@ export class TrackedSession {
   read(frame: XRFrame, time: number): TrackingFrame | null {
     if (!this.start() || !this.#floor) return null;
     this.#locateFloor(frame, this.#floor);
-    const viewer = frame.getViewerPose(this.#floor);
-    const suspended = this.#session.visibilityState !== 'visible';
-    const head = viewer && toTrackedPose(viewer);
-    const { left, right } = this.inputs.read({ frame, space: this.#floor, time, head: head ?? null }, suspended);
-    if (!head) return null;
-    this.#lastHead = head;
-    const deviceBody = this.bodyReader?.read(frame, this.#floor);
-    const poses = { time, head, leftHand: left, rightHand: right, fingers: this.inputs.fingers };
-    return this.#gate.validate({ ...poses, ...(deviceBody && { deviceBody }), ...(suspended && { suspended }) });
+    this.inputs.setGripOffsets(this.#options.gripOffsets?.() ?? noOffsets);
+    const tracked = this.#reader.readAt(time, frame, this.#floor, this.bodyReader);
+    if (tracked) this.#lastHead = tracked.head;
+    return tracked;
   }
 
   /**

@@ -1,4 +1,4 @@
-import { createRoomPass, SocketConnection } from 'threepoint-rooms/socket';
+import { createRoomPass, SocketConnection } from 'threepoint-rooms/internal';
 // @module-tag full
 
 import {

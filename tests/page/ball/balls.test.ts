@@ -1,6 +1,6 @@
 import { InstancedMesh, Matrix4, Vector3 } from 'three';
+import { GazeTargets } from 'threepoint/internal/three';
 import { distance, fromAxisAngle, isFiniteVec3, up, vec3 } from 'threepoint/math';
-import { GazeTargets } from 'threepoint/three';
 import { fallTime } from 'threepoint-games';
 import { ballInAir, ballRadius, ballRules, defaultBallOptions } from 'threepoint-games/ball';
 import { describe, expect, test } from 'vitest';

@@ -1,4 +1,4 @@
-import { BodySolver, deviceJointNames } from 'threepoint';
+import { Body, deviceJointNames } from 'threepoint';
 import {
   actorFrame,
   createJointPoses,
@@ -14,11 +14,10 @@ const kinds = { left: 'hand', right: 'controller' } as const;
 
 /** A body by inverse kinematics, and its frames. */
 function wornBody() {
-  const body = new BodySolver({
+  const body = new Body({
     estimator: 'ik',
     calibration,
     networks: () => Promise.reject(new Error('there are no networks here')),
-    events: { fallback: () => undefined },
   });
   const measurements = new Measurements(body);
   return { body, measurements };

@@ -6,7 +6,7 @@ import {
   sampleRecording,
   writeRecording,
 } from 'threepoint/core';
-import { mocapRateHz } from 'threepoint/motion';
+import { mocapRateHz } from 'threepoint/internal';
 import { describe, expect, test } from 'vitest';
 import { drive } from '../../../bench/evaluate/drive';
 import { addClip, emptyMeasures, report, reportNames } from '../../../bench/evaluate/measures';

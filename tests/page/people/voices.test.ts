@@ -1,5 +1,5 @@
 import { createBallLoopbackHost } from 'threepoint-games/ball';
-import type { VoiceSettings } from 'threepoint-rooms';
+import type { VoiceSettings } from 'threepoint-rooms/internal';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { BlockList } from '../../../src/page/people/voices/block-list';
 import { Voices } from '../../../src/page/people/voices/voices';

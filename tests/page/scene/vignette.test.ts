@@ -1,6 +1,6 @@
 import { PerspectiveCamera } from 'three';
+import { Mirror } from 'threepoint/internal/three';
 import { identity, vec3 } from 'threepoint/math';
-import { Mirror } from 'threepoint/three';
 import { expect, test } from 'vitest';
 import { createVignette } from '../../../src/page/scene/vignette';
 

@@ -34,7 +34,8 @@ function running(change: Partial<FrameParts<undefined>> = {}) {
   const discontinuity = () => {
     seen.jumps += 1;
   };
-  const body = new Body({ estimator: 'ik', events: { discontinuity } });
+  const body = new Body({ estimator: 'ik' });
+  body.addEventListener('discontinuity', discontinuity);
   const timing = new FrameTiming(() => 0);
   return { seen, loop: createFrameLoop(parts, body, timing) };
 }

@@ -1,6 +1,6 @@
 import { type AvatarPose, actorFrame, defaultCalibration, nothingPressed, type TrackingFrame } from 'threepoint/core';
+import { GazeTargets } from 'threepoint/internal/three';
 import { identity, type Vec3, vec3 } from 'threepoint/math';
-import { GazeTargets } from 'threepoint/three';
 import { expect, test } from 'vitest';
 import type { InputParts } from '../../../src/page/shell/input/input-parts';
 import { PageFrame } from '../../../src/page/shell/page-frame';

@@ -1,11 +1,13 @@
-import { Body, type PoseRegressor, ReplayedBody } from 'threepoint';
+import { Body, type PoseRegressor } from 'threepoint';
 import {
   type Calibration,
   type EstimatorName,
   estimatedJoints,
   forwardKinematics,
+  type PaperMethod,
   skeletonFromCalibration,
 } from 'threepoint/core';
+import { ReplayedBody } from 'threepoint/internal';
 import { distance } from 'threepoint/math';
 import { describe, expect, test, vi } from 'vitest';
 import { Recorder } from '../../../src/page/studio/recorder';
@@ -27,7 +29,7 @@ async function replaying(method: EstimatorName, later = false) {
   recorder.load('walk.json', { device: 'a test', rateHz, calibration, frames });
   recorder.replay();
   const networks = async () => (later ? answeringLater(await openPlainModel()) : openPlainModel());
-  const body = new Body({ networks, calibration, estimator: method });
+  const body = new Body<PaperMethod>({ networks, calibration, estimator: method });
   await body.setEstimator(method);
   const replayed = new ReplayedBody(body, recorder);
   const skeleton = skeletonFromCalibration(calibration);

@@ -46,7 +46,7 @@ test('another page shows a moving person’s head, hands and elbows, with 2 % of
     // A round trip of 60 ms, other clocks on both sides.
     for (; next < sent.length && sent[next]!.at + 30 <= time; next++) {
       if (next % 50 === 49) lost += 1;
-      else others.receive('ada', sent[next]!.bytes, 5000 + sent[next]!.at + 30);
+      else others.receive(5000 + sent[next]!.at + 30, 'ada', sent[next]!.bytes);
     }
     const [ada] = others.update(5000 + time);
     if (!ada || time < 500) continue;
@@ -82,7 +82,7 @@ test('a peer that joins later sees the person within a second, or at once after 
   const from = sent.length;
   until(6000);
   const shownAt = sent.slice(from).find(({ at, bytes }) => {
-    late.receive('ada', bytes, at);
+    late.receive(at, 'ada', bytes);
     return late.update(at).length > 0;
   })?.at;
   expect(shownAt).toBeLessThan(5600);
@@ -90,7 +90,7 @@ test('a peer that joins later sees the person within a second, or at once after 
   sender.sendProfile();
   const again = sent.length;
   until(6100);
-  for (const { at, bytes } of sent.slice(again)) later.receive('ada', bytes, at);
+  for (const { at, bytes } of sent.slice(again)) later.receive(at, 'ada', bytes);
   expect(later.update(6100)).toHaveLength(1);
 });
 
@@ -98,14 +98,14 @@ test('a person whose session ends is not shown until poses come again', () => {
   const { until, sent, sender, actor } = sending();
   const others = new RemotePoses();
   until(1000);
-  for (const { at, bytes } of sent) others.receive('ada', bytes, at);
+  for (const { at, bytes } of sent) others.receive(at, 'ada', bytes);
   expect(others.update(1000)).toHaveLength(1);
   const from = sent.length;
   sender.update(1010, { pose: null, calibration: actor.calibration });
-  for (const { bytes } of sent.slice(from)) others.receive('ada', bytes, 1010);
+  for (const { bytes } of sent.slice(from)) others.receive(1010, 'ada', bytes);
   expect(others.update(1020)).toHaveLength(0);
   until(1200);
-  for (const { at, bytes } of sent.slice(from)) others.receive('ada', bytes, at);
+  for (const { at, bytes } of sent.slice(from)) others.receive(at, 'ada', bytes);
   expect(others.update(1200)).toHaveLength(1);
 });
 
@@ -116,7 +116,7 @@ test('a floor that the page moves is part of the packet, far beyond pose coordin
   const others = new RemotePoses();
   let between = false;
   for (const { at, bytes } of sent) {
-    others.receive('ada', bytes, at);
+    others.receive(at, 'ada', bytes);
     const [ada] = others.update(at);
     if (!ada) continue;
     expect(ada.placement?.position).toEqual({ x: 312.5, y: 2, z: -90 });
@@ -136,8 +136,8 @@ test('a peer with another version is refused with a sentence that names both', (
   const other = sent[0]!.bytes.slice();
   other[0] = 17;
   const others = new RemotePoses();
-  expect(others.receive('old', other, 0)).toBe(false);
-  expect(others.receive('old', other, 10)).toBe(false);
+  expect(others.receive(0, 'old', other)).toBe(false);
+  expect(others.receive(10, 'old', other)).toBe(false);
   expect(warn.mock.calls).toEqual([
     [
       `threepoint-rooms: a packet of "old" was refused: it has version 17, and this page reads version ${peerPacketVersion}: use the same release of threepoint-rooms in both.`,
@@ -149,11 +149,15 @@ test('a flood costs its sender the packets beyond three times the usual rate, an
   const { until, sent } = sending();
   until(2000);
   const reasons = new Set<string>();
-  const others = new RemotePoses({ onRefused: (peer, reason) => reasons.add(`${peer}: ${reason}`) });
+  const others = new RemotePoses();
+  others.addEventListener('refused', (event) => {
+    event.preventDefault();
+    reasons.add(`${event.peer}: ${event.reason}`);
+  });
   let taken = 0;
   for (const { at, bytes } of sent) {
-    for (let i = 0; i < 100; i++) if (others.receive('flood', bytes, at)) taken += 1;
-    expect(others.receive('ada', bytes, at)).toBe(true);
+    for (let i = 0; i < 100; i++) if (others.receive(at, 'flood', bytes)) taken += 1;
+    expect(others.receive(at, 'ada', bytes)).toBe(true);
   }
   expect(taken).toBeLessThanOrEqual(90 * 3 + 1);
   expect([...reasons]).toEqual(['flood: it sends too many packets']);
@@ -164,7 +168,7 @@ test('a page hidden for an hour keeps a few packets and draws the newest when sh
   until(8000);
   const others = new RemotePoses();
   const poses = sent.filter(({ bytes }) => bytes[1] !== 0);
-  others.receive('ada', sent[0]!.bytes, 0);
+  others.receive(0, 'ada', sent[0]!.bytes);
   let at = 0;
   // A hidden page draws no frames, and its transport goes on.
   for (let loop = 0; loop < 450; loop++) {
@@ -173,7 +177,7 @@ test('a page hidden for an hour keeps a few packets and draws the newest when sh
       const later = bytes.slice();
       // The pose packet follows three bytes of the peer's.
       setTime(later.subarray(3), at);
-      others.receive('ada', later, at);
+      others.receive(at, 'ada', later);
     }
   }
   const started = process.cpuUsage().user;
@@ -187,11 +191,15 @@ test('the number of peers is limited, and one that is silent for 30 s is forgott
   const { until, sent } = sending();
   until(50);
   const refused: string[] = [];
-  const others = new RemotePoses({ maxPeers: 2, onRefused: (peer) => refused.push(peer) });
-  for (const peer of ['ada', 'ben', 'cy']) others.receive(peer, sent[0]!.bytes, 0);
+  const others = new RemotePoses({ maxPeers: 2 });
+  others.addEventListener('refused', (event) => {
+    event.preventDefault();
+    refused.push(event.peer);
+  });
+  for (const peer of ['ada', 'ben', 'cy']) others.receive(0, peer, sent[0]!.bytes);
   expect(refused).toEqual(['cy']);
   others.update(31_000);
-  expect(others.receive('cy', sent[0]!.bytes, 31_000)).toBe(true);
+  expect(others.receive(31_000, 'cy', sent[0]!.bytes)).toBe(true);
 });
 
 test('a rate, measures or a reference that cannot be are refused with a sentence', () => {
@@ -219,14 +227,16 @@ test('mutated and random packets never throw, and show nobody who is not finite'
     () => Uint8Array.from([peerPacketVersion, below(4), ...Array.from({ length: below(90) }, () => below(256))]),
   ];
   const reasons = new Map<string, number>();
-  const others = new RemotePoses({
-    onRefused: (_peer, reason) => reasons.set(reason, (reasons.get(reason) ?? 0) + 1),
+  const others = new RemotePoses();
+  others.addEventListener('refused', (event) => {
+    event.preventDefault();
+    reasons.set(event.reason, (reasons.get(event.reason) ?? 0) + 1);
   });
   let shown = 0;
   const packets = isNightly ? 1_000_000 : 100_000;
   for (let i = 0; i < packets; i++) {
     const now = 20 * i;
-    others.receive('mallory', ways[below(ways.length)]!(), now);
+    others.receive(now, 'mallory', ways[below(ways.length)]!());
     for (const { joints, pose, placement, mouth, name } of others.update(now)) {
       shown += 1;
       const places = [pose.head, pose.leftHand, joints?.leftHand, joints?.hips, placement];

@@ -129,7 +129,7 @@ test.each(postures)('others draw a person who is %s as the trackers pin the body
   const avatar = await loadAvatar(await readFile('public/avatars/mannequin.vrm'));
   const others = new RemoteBodies({ avatar: async () => avatar });
   let now = 0;
-  const sender = new PoseSender((bytes) => others.receive('ada', bytes, now), { name: 'Ada' });
+  const sender = new PoseSender((bytes) => others.receive(now, 'ada', bytes), { name: 'Ada' });
   const worst = { joints: 0, foot: 0, drawnFoot: 0 };
   let compared = 0;
   for (; now < 2000; now += frameMs) {
@@ -164,7 +164,7 @@ test('a foot lost for a while is not drawn from its tracker; the other one is', 
   const ada = person(raised);
   const others = new RemotePoses();
   let now = 0;
-  const sender = new PoseSender((bytes) => others.receive('ada', bytes, now), { name: 'Ada' });
+  const sender = new PoseSender((bytes) => others.receive(now, 'ada', bytes), { name: 'Ada' });
   const feet: string[] = [];
   for (; now < 2000; now += frameMs) {
     ada.moveTo(now);

@@ -9,10 +9,11 @@ test('a body whose peer is silent for 30 s is removed, as by the transport', asy
   const avatar = await loadAvatar(await readFile('public/avatars/mannequin.vrm'));
   const dispose = vi.spyOn(avatar, 'dispose');
   const forgotten: string[] = [];
-  const others = new RemoteBodies({ avatar: async () => avatar, onPeerTimeout: (peer) => forgotten.push(peer) });
+  const others = new RemoteBodies({ avatar: async () => avatar });
+  others.addEventListener('peertimeout', ({ peer }) => forgotten.push(peer));
   const actor = solvedActor();
   let now = 0;
-  const sender = new PoseSender((bytes) => others.receive('ada', bytes, now), { name: 'Ada' });
+  const sender = new PoseSender((bytes) => others.receive(now, 'ada', bytes), { name: 'Ada' });
   const frame = async () => {
     now += 1000 / 60;
     actor.moveTo(now);
@@ -37,7 +38,7 @@ function sends(others: RemoteBodies, peer: string) {
   const actor = solvedActor();
   let now = 0;
   let reference: string | null = null;
-  const sender = new PoseSender((bytes) => others.receive(peer, bytes, now), { name: peer });
+  const sender = new PoseSender((bytes) => others.receive(now, peer, bytes), { name: peer });
   return (timeMs: number, avatar: string) => {
     now = timeMs;
     actor.moveTo(now);

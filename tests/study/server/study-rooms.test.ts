@@ -1,5 +1,5 @@
 import { RoomTokens } from 'threepoint-relay';
-import { createRoomPass } from 'threepoint-rooms/socket';
+import { createRoomPass } from 'threepoint-rooms/internal';
 import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { scheduleFor } from '../../../src/study/model/plan/schedule';
 import { createStudySeats } from '../../../src/study/server/routes/seats';

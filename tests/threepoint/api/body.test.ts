@@ -1,6 +1,5 @@
 import { describe, expect, test, vi } from 'vitest';
 import { Body, type BodyOptions } from '../../../src/threepoint/api/body';
-import type { BodyCallbacks } from '../../../src/threepoint/api/body-solver';
 import { copyAvatarPose } from '../../../src/threepoint/core/body/avatar-pose';
 import { type Calibration, defaultCalibration } from '../../../src/threepoint/core/body/calibration';
 import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
@@ -13,6 +12,8 @@ import { createPageClock } from '../../../src/threepoint/core/tracking/page-cloc
 import type { TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
 import { openPlainModel, openShippedModel } from '../core/estimation/shipped-models';
 import { at, calibration, observed } from './observed-body';
+
+type Observed = Awaited<ReturnType<typeof observed>>['body'];
 
 /** Stands upright at this height of the eyes [m]. */
 const standing = (time: number, eyeHeight: number): TrackingFrame => ({
@@ -125,8 +126,8 @@ describe('a body', () => {
   });
 
   test.each([
-    ['is not seen', (body: Body) => body.update(null)],
-    ['pauses', (body: Body) => body.discontinuity()],
+    ['is not seen', (body: Observed) => body.update(null)],
+    ['pauses', (body: Observed) => body.discontinuity()],
   ])('takes no height from the moments before a headset %s, nor at once after', async (_, interrupt) => {
     const { body, reported } = await observed({ estimator: 'ik', autoGrow: false });
     for (let frame = 0; frame < 30; frame++) body.update(standing(frame / 60, 0.9));
@@ -149,8 +150,8 @@ describe('a body', () => {
     const body = new Body({
       estimator: 'ik',
       calibration: measures,
-      events: { calibrated: ({ calibration: { eyeHeight } }) => reported.push(eyeHeight) },
     });
+    body.addEventListener('calibrated', ({ calibration: { eyeHeight } }) => reported.push(eyeHeight));
     const pelvis = () => body.update(at(0))!.body!.hipsPosition.y;
     const before = pelvis();
     measures.eyeHeight = 1.85;
@@ -168,8 +169,8 @@ describe('a body', () => {
   test('follows a stand-in whose page goes on changing their measures', () => {
     const reported: number[] = [];
     const person = { ...calibration, eyeHeight: 1.7 };
-    const events: BodyCallbacks = { calibrated: ({ calibration: { eyeHeight } }) => reported.push(eyeHeight) };
-    const body = new Body({ estimator: 'ik', calibration, events });
+    const body = new Body({ estimator: 'ik', calibration });
+    body.addEventListener('calibrated', ({ calibration: { eyeHeight } }) => reported.push(eyeHeight));
     body.update(at(0), person);
     person.eyeHeight = 1.8;
     body.update(at(1 / 60), person);
@@ -213,14 +214,9 @@ describe('a body', () => {
 
   test('has no pose after a session, and reports start and end once each', async () => {
     const reported: (string | null)[] = [];
-    const body = new Body({
-      calibration,
-      estimator: 'ik',
-      events: {
-        sessionstart: () => reported.push('start'),
-        sessionend: () => reported.push('end', body.pose && 'pose'),
-      },
-    });
+    const body = new Body({ calibration, estimator: 'ik' });
+    body.addEventListener('sessionstart', () => reported.push('start'));
+    body.addEventListener('sessionend', () => reported.push('end', body.pose && 'pose'));
     body.startSession();
     body.update(at(0));
     body.endSession();
@@ -237,15 +233,31 @@ describe('a body', () => {
       networks() {
         throw new Error('no networks here');
       },
-      events: {
-        estimatorchange: () => reported.push('changed'),
-        fallback: ({ estimator, reason }) => reported.push(`${estimator}: ${reason}`),
-      },
+    });
+    body.addEventListener('estimatorchange', () => reported.push('changed'));
+    body.addEventListener('fallback', (event) => {
+      event.preventDefault();
+      reported.push(`${event.estimator}: ${event.reason}`);
     });
     expect(reported).toEqual([]);
     await body.setEstimator(estimator);
     expect(body.estimator).toBe(estimator === 'learned' ? 'ik' : estimator);
     expect(reported.includes('learned: no networks here')).toBe(estimator !== 'ik');
+  });
+
+  test('keeps the offsets of grips whatever is measured, until others are set', async () => {
+    const { body } = await observed({ estimator: 'ik' });
+    const gripOffsets = { 'valve-index': { ahead: 0.01, lean: -0.1 } };
+    body.setGripOffsets(gripOffsets);
+    for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.7));
+    expect(body.calibration).toMatchObject({ eyeHeight: 1.7, gripOffsets });
+    body.calibrate(calibration);
+    expect(body.calibration).toEqual({ ...calibration, gripOffsets });
+    body.calibrate('auto');
+    expect(body.userCalibration.gripOffsets).toEqual(gripOffsets);
+    expect(() => body.setGripOffsets({ any: { ahead: 2, lean: 0 } })).toThrow('The offset of any exceeds 0.10 m');
+    body.setGripOffsets({});
+    expect(body.userCalibration.gripOffsets).toEqual({});
   });
 
   test('refuses measures of no person', async () => {
@@ -262,11 +274,7 @@ describe('a body', () => {
   test('refuses an option that it does not know, and names those that it does', () => {
     // reason: what a page without types may pass
     expect(() => new Body({ calibraton: calibration } as BodyOptions)).toThrow(
-      '“calibraton” is not an option of Body. Use estimator, calibration, autoGrow, networks, pinning, clock, profiler, events.',
-    );
-    const events = { fallbak: () => undefined } as BodyOptions['events'];
-    expect(() => new Body({ events: events! })).toThrow(
-      /^“fallbak” is not an option of the events of Body\. Use calib/,
+      '“calibraton” is not an option of Body. Use estimator, calibration, autoGrow, networks, pinning.',
     );
   });
 
@@ -317,7 +325,8 @@ describe('a body that another moves', () => {
 
   test('is where they are in their first frame: nothing is drawn on the way', async () => {
     let jumps = 0;
-    const body = new Body({ estimator: 'ik', calibration, events: { discontinuity: () => (jumps += 1) } });
+    const body = new Body({ estimator: 'ik', calibration });
+    body.addEventListener('discontinuity', () => (jumps += 1));
     for (let frame = 0; frame < 30; frame++) body.update(at(frame / 60));
     expect(jumps).toBe(0);
     const elsewhere = standing(0.5, 1.5);
@@ -332,13 +341,9 @@ describe('a body that another moves', () => {
 describe('measures of a stand-in', () => {
   test('are the same in every frame, also where a page writes them out in each', () => {
     const reported: string[] = [];
-    const body = new Body({
-      estimator: 'ik',
-      events: {
-        discontinuity: () => reported.push('jumped'),
-        calibrated: ({ source }) => reported.push(`calibrated ${source}`),
-      },
-    });
+    const body = new Body({ estimator: 'ik' });
+    body.addEventListener('discontinuity', () => reported.push('jumped'));
+    body.addEventListener('calibrated', ({ source }) => reported.push(`calibrated ${source}`));
     const handTilts = { left: { pitch: 0.1, yaw: 0.2 } };
     for (let frame = 0; frame < 90; frame++)
       body.update(at(frame / 90), { eyeHeight: 1.65, armSpan: 1.56, handTilts: structuredClone(handTilts) });
@@ -372,7 +377,8 @@ describe('measures of a stand-in', () => {
 
 test('time is its own: after a pause a body is reset, half a second on', () => {
   let jumps = 0;
-  const body = new Body({ estimator: 'ik', events: { discontinuity: () => (jumps += 1) } });
+  const body = new Body({ estimator: 'ik' });
+  body.addEventListener('discontinuity', () => (jumps += 1));
   const first = body.tick(5000);
   expect(body.tick(5020) - first).toBeCloseTo(0.02);
   expect(jumps).toBe(0);
@@ -384,9 +390,11 @@ test('time is its own: after a pause a body is reset, half a second on', () => {
 test('bodies that share a clock are at one time, and each is reset after a pause', () => {
   const clock = createPageClock(() => 0);
   const jumped: string[] = [];
-  const [first, second] = ['first', 'second'].map(
-    (name) => new Body({ estimator: 'ik', clock, events: { discontinuity: () => jumped.push(name) } }),
-  );
+  const [first, second] = ['first', 'second'].map((name) => {
+    const body = new Body({ estimator: 'ik', clock });
+    body.addEventListener('discontinuity', () => jumped.push(name));
+    return body;
+  });
   for (const timestampMs of [5000, 5020, 65_020]) {
     const time = first!.tick(timestampMs);
     expect(second!.tick(timestampMs)).toBe(time);

@@ -6,6 +6,7 @@ import { closedHand } from '../../../src/threepoint/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../../src/threepoint/core/body/skeleton';
 import { createEstimator, networkOf } from '../../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../../src/threepoint/core/estimation/networks/pose-regressor';
+import type { PaperMethod } from '../../../src/threepoint/core/estimation/pose-estimator';
 import { distance } from '../../../src/threepoint/core/math/vec3';
 import { createSkeletonPose } from '../../../src/threepoint/core/motion/imported-motion';
 import { turnPoint } from '../../../src/threepoint/core/motion/motion-bones';
@@ -36,7 +37,11 @@ describe('a recording', () => {
   test.each(['ik', 'learned', 'paper', 'paper-published'] as const)(
     'becomes the BVH of what %s draws live, within 1 mm',
     async (name) => {
-      const { parts, extension } = await exportMotion(recording, { format: 'bvh', estimator: name, networks });
+      const { parts, extension } = await exportMotion<PaperMethod>(recording, {
+        format: 'bvh',
+        estimator: name,
+        networks,
+      });
       expect(extension).toBe('bvh');
       const file = finishWork(readBvh(textOf(parts)));
       const pose = createSkeletonPose(file.joints.length);
@@ -76,7 +81,10 @@ describe('a recording', () => {
     await expect(exportMotion(recording, { format: 'bvh', estimator: 'hands-only' })).rejects.toThrow(
       /estimates no body/,
     );
-    await expect(exportMotion(recording, { format: 'bvh', estimator: 'paper' })).rejects.toThrow(/needs a runtime/);
+    // reason: what a page without types may pass
+    await expect(exportMotion(recording, { format: 'bvh', estimator: 'paper' as 'learned' })).rejects.toThrow(
+      /needs a runtime/,
+    );
     await expect(exportMotion(recording, { format: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
       /“fbx” is not a motion format/,
     );

@@ -1,4 +1,4 @@
-import { defaultCalibration, type EstimatorName, type TrackingFrame } from 'threepoint/core';
+import { defaultCalibration, type EstimatorName, type PaperMethod, type TrackingFrame } from 'threepoint/core';
 import type { TrackedPose } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { Body } from '../../../src/threepoint/api/body';
@@ -46,12 +46,8 @@ const slips: readonly (readonly [what: string, slip: (frame: TrackingFrame) => T
 
 async function bodyBy(estimator: EstimatorName) {
   const faults: string[] = [];
-  const body = new Body({
-    estimator,
-    calibration,
-    networks: async () => openPlainModel(),
-    events: { fallback: ({ estimator, reason }) => faults.push(`${estimator} ${reason}`) },
-  });
+  const body = new Body<PaperMethod>({ estimator, calibration, networks: async () => openPlainModel() });
+  body.addEventListener('fallback', ({ estimator, reason }) => faults.push(`${estimator} ${reason}`));
   await body.setEstimator(estimator);
   return { body, faults };
 }
@@ -79,14 +75,9 @@ describe.each(['ik', 'learned', 'device'] as const)('a body by %s', (estimator) 
 
 test('a point that is no place is lost for its frame, and found again', async () => {
   const reported: string[] = [];
-  const body = new Body({
-    estimator: 'ik',
-    calibration,
-    events: {
-      trackinglost: ({ point }) => reported.push(`lost ${point}`),
-      trackingfound: ({ point }) => reported.push(`found ${point}`),
-    },
-  });
+  const body = new Body({ estimator: 'ik', calibration });
+  body.addEventListener('trackinglost', ({ point }) => reported.push(`lost ${point}`));
+  body.addEventListener('trackingfound', ({ point }) => reported.push(`found ${point}`));
   body.update(at(0));
   body.update({ ...at(1 / rate), leftHand: { ...at(1 / rate).leftHand!, position: nowhere } });
   const shown = JSON.stringify(body.update(at(2 / rate)));

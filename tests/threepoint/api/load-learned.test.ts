@@ -8,7 +8,8 @@ const models = new URL('../../../public/models/', import.meta.url);
 
 test('a program of Node has the learned network from disk without giving its place', async () => {
   const reported: string[] = [];
-  const body = new Body({ events: { fallback: ({ reason }) => reported.push(reason) } });
+  const body = new Body();
+  body.addEventListener('fallback', ({ reason }) => reported.push(reason));
   await body.setEstimator('learned');
   expect(reported).toEqual([]);
   expect([body.estimator, body.provider]).toEqual(['learned', 'plain']);

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
-import { actorFrame, defaultCalibration } from 'threepoint/core';
+import { actorFrame, defaultCalibration, type PaperMethod } from 'threepoint/core';
 import { expect, test } from 'vitest';
 import { Body } from '../../../src/threepoint/api/body';
 import { loadLearned } from '../../../src/threepoint/api/load-learned';
@@ -25,14 +25,14 @@ test.each(['paper', 'learned'] as const)(
       estimator: name,
       calibration: defaultCalibration,
       networks: onnxNetworks({ modelUrl: (network) => `${models}/${network}.json` }),
-      events: { fallback: ({ reason }) => reported.push(reason) },
     });
+    body.addEventListener('fallback', ({ reason }) => reported.push(reason));
     await body.setEstimator(name);
     expect(body.estimator).toBe(name);
     const ik = new Body({ estimator: 'ik', calibration: defaultCalibration });
     await ik.setEstimator('ik');
     const first = actorFrame(1, defaultCalibration);
-    const chestOf = (drawn: Body, time: number) => ({
+    const chestOf = (drawn: Body | Body<PaperMethod>, time: number) => ({
       ...drawn.update({ ...first, time })!.body!.localRotations.chest,
     });
     expect(chestOf(body, 0)).toEqual(chestOf(ik, 0));

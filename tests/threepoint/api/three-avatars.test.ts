@@ -1,10 +1,17 @@
+import { Group, Quaternion, Vector3 } from 'three';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { actorFrame, defaultCalibration, type Fingers } from 'threepoint/core';
 import { distance } from 'threepoint/math';
 import { beforeEach, describe, expect, test, vi } from 'vitest';
 import { avatarMotionWriter, loadAvatar } from '../../../src/threepoint/api/three';
 import { closedHand, flatHand } from '../../../src/threepoint/core/body/hand-shape';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { builtRig } from '../avatar/built-rig';
 import { changed, mannequin } from '../avatar/glb';
+import { packedSkin } from '../avatar/packed-skin';
+import { vroid } from '../avatar/rig-namings';
+
 import { poseOf } from '../core/estimation/drawn';
 
 describe('an avatar', () => {
@@ -55,6 +62,49 @@ describe('an avatar', () => {
     const flat = reach({ left: flatHand, right: flatHand });
     expect(flat).toBeGreaterThan(0.15);
     expect(reach({ left: closedHand, right: flatHand })).toBeLessThan(0.6 * flat);
+  });
+
+  test('carries an item in the axes of the wrist and hides it with a lost hand', async () => {
+    const avatar = await loadAvatar(mannequin());
+    avatar.setCalibration(defaultCalibration);
+    const [sword, hat] = [new Group(), new Group()];
+    avatar.attach(sword, 'rightHand');
+    avatar.attach(hat, 'head');
+    const pose = poseOf(createIk(defaultCalibration), actorFrame(1, defaultCalibration));
+    avatar.setPose(pose, 1);
+    const { position, orientation } = pose.rightHand!;
+    avatar.object.updateMatrixWorld(true);
+    expect(distance(sword.getWorldPosition(new Vector3()), position)).toBeLessThan(0.001);
+    expect(sword.getWorldQuaternion(new Quaternion())).toBeSameRotationAs(orientation, 0.1);
+    expect(distance(sword.getWorldScale(new Vector3()), { x: 1, y: 1, z: 1 })).toBeLessThan(1e-9);
+    expect(hat.getWorldQuaternion(new Quaternion())).toBeSameRotationAs(pose.head.orientation, 0.1);
+    avatar.setPose({ ...pose, body: null, rightHand: null }, 1.1);
+    expect([sword.parent!.visible, hat.parent!.visible]).toEqual([false, true]);
+    sword.removeFromParent();
+    avatar.setPose(pose, 1.2);
+    expect(sword.parent).toBeNull();
+  });
+
+  test.each([
+    ['a VRM', () => loadAvatar(mannequin())],
+    ['another humanoid', () => loadAvatar(foreign, { bones })],
+  ])('has the nodes of its bones and its VRM (%s)', async (_, load) => {
+    const avatar = await load();
+    avatar.setPose(poseOf(createIk(defaultCalibration), actorFrame(1, defaultCalibration)), 1);
+    avatar.object.updateMatrixWorld(true);
+    const wrist = avatar.getBone('leftHand')!.getWorldPosition(new Vector3());
+    expect(distance(wrist, avatar.jointPositions().leftHand!)).toBeLessThan(1e-6);
+    expect(avatar.getBone('jaw')).toBeNull();
+    expect(avatar.vrm.scene.parent).toBe(avatar.object);
+  });
+
+  test('is read from a compressed file with the decoders of the page’s GLTFLoader', async () => {
+    const file = await packedSkin(builtRig({ nameOf: vroid }));
+    await expect(loadAvatar(file)).rejects.toThrow('is compressed (EXT_meshopt_compression)');
+    const loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+    expect((await loadAvatar(file, { loader })).height).toBeGreaterThan(1);
+    await expect(avatarMotionWriter(file)).rejects.toThrow('is compressed (EXT_meshopt_compression)');
+    expect((await avatarMotionWriter(file, { loader })).extension).toBe('glb');
   });
 
   test('is refused with a map that has a missing name or lacks a bone', async () => {

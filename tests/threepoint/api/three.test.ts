@@ -10,6 +10,7 @@ import { distance, type Vec3 } from '../../../src/threepoint/core/math/vec3';
 import { toXRBody } from '../../../src/threepoint/core/motion/xr-body';
 import { actorFrame } from '../../../src/threepoint/core/tracking/actor-motion';
 import type { BodyTrackers, TrackingFrame } from '../../../src/threepoint/core/tracking/tracking-frame';
+import { gripDevice } from '../../../src/threepoint/xr/grip-offsets';
 import { mannequin } from '../avatar/glb';
 import { controller } from '../xr/fake-headset';
 import { begin, left, right, wornHeadset } from './three-session';
@@ -212,16 +213,26 @@ describe('a body in a session of three.js', () => {
     expect(wrist()).toBeGreaterThan(0.1);
   });
 
-  test('draws a frame that the page changes between reading and solving as `update` draws one', async () => {
+  test('draws the wrist where the user’s offset for the controller puts it', async () => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration, estimator: 'ik' });
+    headset.putOn();
+    run(40);
+    const before = { ...tracker.avatar.jointPositions().leftHand! };
+    const [source] = headset.session.inputSources;
+    tracker.body.setGripOffsets({ [gripDevice(source!.profiles)]: { ahead: 0.03, lean: 0 } });
+    run(2);
+    expect(distance(tracker.avatar.jointPositions().leftHand!, before)).toBeCloseTo(0.03, 3);
+  });
+
+  test('draws the hands that a game returns from its function of a frame', async () => {
     const { headset, tracker } = await begin({ calibration: defaultCalibration, estimator: 'ik' });
     headset.putOn();
     const raised = { ...standing.head, position: { x: 0.2, y: 1.7, z: 0 } };
     for (let frame = 0; frame < 40; frame++) {
-      const time = tracker.body.tick(1000 + (frame * 1000) / 72);
-      const read = tracker.read(headset.frame, time)!;
-      expect(tracker.tracking!.inputs.buttons.left.trigger).toBe(0);
-      tracker.body.solve({ ...read, rightHand: raised });
-      tracker.draw(time);
+      tracker.update(1000 + (frame * 1000) / 72, headset.frame, (tracked) => {
+        expect(tracker.tracking!.inputs.buttons.left.trigger).toBe(0);
+        return { ...tracked, rightHand: raised };
+      });
     }
     const { leftHand, rightHand } = tracker.avatar.jointPositions();
     expect(distance(rightHand!, raised.position)).toBeLessThan(0.001);
@@ -240,6 +251,26 @@ describe('a body in a session of three.js', () => {
     expect(distance(second.jointPositions().leftHand!, tracker.pose!.leftHand!.position)).toBeLessThan(0.001);
     expect(ownHeadSeen(tracker)).toBe(false);
     expect(() => tracker.setAvatar(first)).toThrow('This avatar was disposed of with its BodyTracker.');
+  });
+
+  test('returns its avatars to a page that keeps them, and continues the session with each', async () => {
+    const { headset, tracker, run, reported } = await begin({ calibration: defaultCalibration, disposeAvatar: false });
+    headset.putOn();
+    run(40);
+    const [first, second] = [tracker.avatar, await loadAvatar(mannequin())];
+    const dispose = vi.spyOn(first, 'dispose');
+    const before = reported.length;
+    tracker.setAvatar(second);
+    run(1);
+    expect(first.object.parent).toBeNull();
+    tracker.setAvatar(first);
+    run(1);
+    expect(tracker.object.children).toEqual([first.object]);
+    expect(distance(first.jointPositions().leftHand!, tracker.pose!.leftHand!.position)).toBeLessThan(0.001);
+    expect(reported.slice(before)).toEqual([]);
+    await tracker.dispose();
+    expect(dispose).not.toHaveBeenCalled();
+    expect(first.object.parent).toBeNull();
   });
 
   test('starts without an avatar, which follows', async () => {

@@ -18,7 +18,8 @@ import type { ObjectHolds } from '../../../src/threepoint/avatar/hands/hold-obje
 import { fingerBoneNames } from '../../../src/threepoint/core/body/finger-bone-names';
 import { distanceToBall, distanceToRod } from '../../../src/threepoint/core/body/grasp';
 import { fingerNames } from '../../../src/threepoint/core/body/hand-shape';
-import { createIk, createWithNetwork } from '../../../src/threepoint/core/estimation/estimators';
+import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { createWithNetwork } from '../../../src/threepoint/core/estimation/with-network';
 import { hangingThrower } from '../../games/ball/hanging-thrower';
 import { show } from '../core/estimation/drawn';
 import { openPlainModel } from '../core/estimation/shipped-models';

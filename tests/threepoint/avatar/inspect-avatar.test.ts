@@ -22,6 +22,21 @@ function withBinaryLength(length: number): ArrayBuffer {
   return file;
 }
 
+/** A KTX2 texture of this size [pixels]: its header alone. */
+function ktx2Header(width: number, height: number): Buffer {
+  const bytes = Buffer.from('\xabKTX 20\xbb\r\n\x1a\n'.padEnd(80, '\0'), 'latin1');
+  bytes.writeUInt32LE(width, 20);
+  bytes.writeUInt32LE(height, 24);
+  return bytes;
+}
+
+test('KTX2 textures are read where the page has their decoder, within the limits of pictures', () => {
+  const look = (width: number) =>
+    inspectAvatar(new Uint8Array(withPictures(1, ktx2Header(width, 64))), 'person.vrm', ['KHR_texture_basisu']);
+  expect(() => look(64)).not.toThrow();
+  expect(() => look(16_384)).toThrow(/16384 pixels across picture 0/);
+});
+
 const ktx2Sentence = /has KTX2 textures, which .* Convert them to PNG, JPEG or WebP and save it again\./;
 
 /** What the description of a file may say, and the sentence for it. */
@@ -113,11 +128,7 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
     /million pixels; an avatar may have 96 at most/,
   ],
   ['a picture that is none', () => withPictures(1, Buffer.from('<svg onload="alert(1)"/>')), /picture 0 is no PNG/],
-  [
-    'a KTX2 texture that it does not need',
-    () => withPictures(1, Buffer.from('\xabKTX 20\xbb\r\n\x1a\n'.padEnd(80, '\0'), 'latin1')),
-    ktx2Sentence,
-  ],
+  ['a KTX2 texture that it does not need', () => withPictures(1, ktx2Header(64, 64)), ktx2Sentence],
   ['a file that is cut short', () => mannequin().slice(0, 3000), /truncated/],
   ['a file without its last word', () => mannequin().slice(0, -4), /truncated/],
   ['a file that is cut off within a mesh', () => mannequin().slice(0, -20_000), /truncated/],

@@ -1,6 +1,8 @@
 import { fromAxisAngle, identity, up, vec3 } from 'threepoint/math';
 import { LegPosture, type LegProportions } from '../../../src/threepoint/avatar/legs/leg-posture';
+import { Gait } from '../../../src/threepoint/core/estimation/gait/gait';
 import type { GaitPoints } from '../../../src/threepoint/core/estimation/gait/gait-features';
+import { shippedGait } from '../../../src/threepoint/core/estimation/gait/shipped-gait';
 
 export const eyeHeight = 1.6;
 export const proportions: LegProportions = {
@@ -12,7 +14,7 @@ export const proportions: LegProportions = {
 };
 
 /** Returns the legs that the page draws for a person of these measures. */
-export const createLegs = (): LegPosture => new LegPosture(proportions, eyeHeight);
+export const createLegs = (): LegPosture => new LegPosture(proportions, eyeHeight, new Gait(shippedGait));
 
 /** A person 1.6 m high at the eyes who stands at the origin, hands hanging, and leans and sways a little. */
 export function standing(time: number): GaitPoints {

@@ -1,9 +1,12 @@
 import fc from 'fast-check';
-import { distance, dot, rotate, vec3 } from 'threepoint/math';
+import { angleBetween, distance, dot, identity, rotate, vec3, zero } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
+import { rotateInverse } from '../../../src/threepoint/core/math/quat';
 import {
+  adjustedFit,
   bareHandFit,
   genericFit,
+  gripDevice,
   gripFromWrist,
   handleFit,
   wristFromGrip,
@@ -45,6 +48,34 @@ describe('a controller in the hand', () => {
   test('the first known profile decides; unknown devices get the generic fit', () => {
     expect(handleFit(['no-such-device', 'htc-vive', 'generic-trigger'])).toEqual(handleFit(['htc-vive']));
     expect(handleFit(['no-such-device'])).toEqual(genericFit);
+  });
+
+  test('the user’s offset moves the wrist back and turns it, for their device alone', () => {
+    const profiles = ['meta-quest-touch-plus-v9', 'meta-quest-touch-plus', 'generic-trigger-squeeze'];
+    const device = gripDevice(profiles);
+    expect(device).toBe('meta-quest-touch-plus');
+    const offsets = { [device]: { ahead: 0.02, lean: 0.2 } };
+    expect(adjustedFit(genericFit, ['htc-vive'], offsets)).toBe(genericFit);
+    const grip = { position: vec3(0, 1, -0.4), orientation: fromEulerYxz(vec3(Math.PI / 4, 0, 0)) };
+    for (const side of ['left', 'right'] as const) {
+      const before = wristFromGrip(grip, side, handleFit(profiles));
+      const after = wristFromGrip(
+        grip,
+        side,
+        adjustedFit(handleFit(profiles), profiles, { [device]: { ahead: 0.02, lean: 0 } }),
+      );
+      expect(distance(before.position, after.position)).toBeCloseTo(0.02, 9);
+      expect(after.position.z).toBeGreaterThan(before.position.z + 0.019);
+      const turned = wristFromGrip(grip, side, adjustedFit(handleFit(profiles), profiles, offsets));
+      expect(angleBetween(before.orientation, turned.orientation)).toBeCloseTo(0.2, 9);
+    }
+  });
+
+  test('a pen lies before the knuckles, with its tip ahead', () => {
+    const wrist = wristFromGrip({ position: zero, orientation: identity }, 'right', handleFit(['logitech-mx-ink']));
+    const tip = rotateInverse(wrist.orientation, vec3(0, 0, -1));
+    expect(tip.z).toBeLessThan(-0.9);
+    expect(distance(wrist.position, zero)).toBeGreaterThan(0.11);
   });
 
   test.each([

@@ -3,7 +3,8 @@
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { defaultCalibration, reasonOf, type TrackingFrame } from 'threepoint/core';
 import { checkInWorker, parseChecked } from 'threepoint/files';
-import { type Avatar, thirdPersonOnlyLayer } from 'threepoint/three';
+import { thirdPersonOnlyLayer } from 'threepoint/internal/three';
+import type { Avatar } from 'threepoint/three';
 import { decoders } from '../../../src/page/scene/decoders';
 import { createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { trackerAtJoint } from '../../../src/threepoint/core/body/tracker-offsets';

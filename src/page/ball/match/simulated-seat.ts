@@ -5,8 +5,8 @@ import {
   type PoseEstimator,
   type TrackingFrame,
 } from 'threepoint/core';
+import { fingersFromButtons } from 'threepoint/internal/three';
 import { identity, zero } from 'threepoint/math';
-import { fingersFromButtons } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
 import {
   type BallBot,

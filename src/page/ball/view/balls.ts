@@ -10,6 +10,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import type { GazeTargets } from 'threepoint/internal/three';
 import {
   addScaled,
   copyVec3,
@@ -24,7 +25,6 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/math';
-import type { GazeTargets } from 'threepoint/three';
 import {
   type BallLocation,
   type BallState,

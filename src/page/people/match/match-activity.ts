@@ -9,12 +9,12 @@ import {
   type PointerTarget,
   type TrackingFrame,
 } from 'threepoint/core';
+import type { GazeTargets } from 'threepoint/internal/three';
 import type { Pose, Ray, Transform } from 'threepoint/math';
-import type { GazeTargets } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
-import { bannerText } from 'threepoint-rooms';
+import { bannerText } from 'threepoint-rooms/internal';
+import type { RoomBodies } from 'threepoint-rooms/internal/three';
 import type { HostedGame } from 'threepoint-rooms/room';
-import type { RoomBodies } from 'threepoint-rooms/three';
 import type { ActivityPanel, OpenActivity, PlayerProbe, Watched } from '../../activity/activity';
 import type { ActivityContext } from '../../activity/activity-context';
 import type { ActivityMenu } from '../../activity/activity-menu';

@@ -1,5 +1,6 @@
 import type { GameName } from 'threepoint-games/all';
-import type { HostedGame, RoomView, SeenAbsence } from 'threepoint-rooms/room';
+import type { SeenAbsence } from 'threepoint-rooms/internal';
+import type { HostedGame, RoomView } from 'threepoint-rooms/room';
 import { PhrasedError } from 'threepoint-study';
 import type { Awaited, TaskEnd, TaskEvent, TaskPlace, TrialAbsence } from 'threepoint-study/participant';
 import type { ActivityRunner, RunnerServices } from '../../activity/activity';

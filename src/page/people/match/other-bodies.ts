@@ -1,9 +1,11 @@
 import { type BuiltInBody, defaultAvatar } from 'threepoint/core';
 import { checkInWorker, loadUntrustedAvatar, parseAvatar } from 'threepoint/files';
-import { type Avatar, createAvatarBetweenFrames, weaveCloth } from 'threepoint/three';
-import type { AvatarExchange, RoomClient } from 'threepoint-rooms';
+import { createAvatarBetweenFrames, weaveCloth } from 'threepoint/internal/three';
+import type { Avatar } from 'threepoint/three';
+import type { RoomClient } from 'threepoint-rooms';
+import type { AvatarExchange } from 'threepoint-rooms/internal';
+import { RoomBodies } from 'threepoint-rooms/internal/three';
 import type { HostedGame } from 'threepoint-rooms/room';
-import { RoomBodies } from 'threepoint-rooms/three';
 import { type ActivityContext, showsIdleMotion } from '../../activity/activity-context';
 import { decoders } from '../../scene/decoders';
 import type { Voices } from '../voices/voices';

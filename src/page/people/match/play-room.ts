@@ -1,12 +1,10 @@
-import { type AvatarExchange, fetchVoiceSettings, type VoiceSettings } from 'threepoint-rooms';
 import {
-  type ClientPolicy,
-  type Connection,
-  type HostedGame,
+  type AvatarExchange,
+  fetchVoiceSettings,
   type LocalClock,
-  LoopbackHost,
-  type Visitor,
-} from 'threepoint-rooms/room';
+  type VoiceSettings,
+} from 'threepoint-rooms/internal';
+import { type ClientPolicy, type Connection, type HostedGame, LoopbackHost, type Visitor } from 'threepoint-rooms/room';
 import type { SignedSeat } from 'threepoint-study';
 import { pageFolder } from 'threepoint-ui';
 import type { ActivityContext } from '../../activity/activity-context';

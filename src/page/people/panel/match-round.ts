@@ -1,4 +1,5 @@
-import { bannerText, connectionText, type RoomClient } from 'threepoint-rooms';
+import type { RoomClient } from 'threepoint-rooms';
+import { bannerText, connectionText } from 'threepoint-rooms/internal';
 import type { HostedGame } from 'threepoint-rooms/room';
 import type { MatchFrame } from '../match/match-frame';
 import type { SeatedGame } from '../match/seated-game';

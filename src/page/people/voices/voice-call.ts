@@ -1,5 +1,5 @@
-import { VoiceMesh } from 'threepoint-rooms';
-import type { SignalBody } from 'threepoint-rooms/room';
+import type { SignalBody } from 'threepoint-rooms/internal';
+import { VoiceMesh } from 'threepoint-rooms/internal';
 import { VoiceSound } from '../../scene/sound/voice-sound';
 
 export interface VoiceCallOptions {

@@ -1,6 +1,8 @@
 import { firstLine, reasonOf } from 'threepoint/core';
-import { hasRelay, IceServerCache, Microphone, type RoomClient, type VoiceSettings } from 'threepoint-rooms';
-import type { HostedGame, VoiceChannel } from 'threepoint-rooms/room';
+import type { RoomClient } from 'threepoint-rooms';
+import type { VoiceChannel } from 'threepoint-rooms/internal';
+import { hasRelay, IceServerCache, Microphone, type VoiceSettings } from 'threepoint-rooms/internal';
+import type { HostedGame } from 'threepoint-rooms/room';
 import type { BlockList } from './block-list';
 import { SeatVoices } from './seat-voices';
 import { VoiceCall } from './voice-call';

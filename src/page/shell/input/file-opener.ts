@@ -1,5 +1,5 @@
 import { type BoneMap, firstLine, reasonOf } from 'threepoint/core';
-import { isSkeletonMap } from 'threepoint/motion';
+import { isSkeletonMap } from 'threepoint/internal';
 import { type FileKind, fileNameOf, formatSentence, readLimited } from 'threepoint-ui';
 import { isTable, purposeOfTable } from '../../mocap/table-files';
 import { browserStorage } from '../session/preferences';

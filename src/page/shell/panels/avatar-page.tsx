@@ -1,6 +1,6 @@
 import { useRef } from 'preact/hooks';
 import { defaultAvatar, skinTones } from 'threepoint/core';
-import { bodyLabels, palettes, skinColors } from 'threepoint/three';
+import { bodyLabels, palettes, skinColors } from 'threepoint/internal/three';
 import { Button, FileButton, Group, StatusLine, Toggle } from 'threepoint-ui/controls';
 import { LazyBonesForm } from '../../bones/lazy-bones-form';
 import { ownColours } from '../session/settings';

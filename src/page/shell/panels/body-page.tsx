@@ -1,8 +1,16 @@
 import { useRef } from 'preact/hooks';
-import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
+import {
+  armSpanRange,
+  fingertipSpanFromArmSpan,
+  forearmRange,
+  largestGripOffset,
+  type MeasureRange,
+  statureRange,
+} from 'threepoint/core';
 import { Button, Details, Toggle, TypedInput } from 'threepoint-ui/controls';
 import { estimatorTexts, listedEstimators } from '../session/estimator-texts';
 import type { PanelPageProps } from './panel-actions';
+import type { GripCorrection } from './panel-state';
 
 const methodDetails = Object.values(estimatorTexts).map(({ label, details }) => [label, details] as const);
 
@@ -107,6 +115,62 @@ function Measures({ state, actions }: PanelPageProps) {
   );
 }
 
+interface SliderProps {
+  readonly label: string;
+  readonly unit: string;
+  /** The largest value; the smallest is its negative. */
+  readonly most: number;
+  readonly value: number;
+  readonly set: (value: number) => void;
+}
+
+/** A correction to both sides of 0, in whole units. */
+const Slider = ({ label, unit, most, value, set }: SliderProps) => (
+  <label class="labelled">
+    <span>{label}</span>
+    <input
+      type="range"
+      min={-most}
+      max={most}
+      step={1}
+      aria-label={label}
+      aria-valuetext={`${rounded(value)} ${unit}`}
+      value={Math.round(value)}
+      onInput={({ currentTarget }) => set(currentTarget.valueAsNumber)}
+    />
+    <i>{`${rounded(value)} ${unit}`}</i>
+  </label>
+);
+
+/** How the user holds the controllers that were used last. */
+function Grip({ grip, actions }: { readonly grip: GripCorrection; readonly actions: PanelPageProps['actions'] }) {
+  const correct = (change: Partial<GripCorrection>) => actions.correctGrip({ ...grip, ...change });
+  return (
+    <section>
+      <h2>Your grip</h2>
+      <p class="hint">
+        Look at your hands with the headset on. Move these until the drawn wrists lie on yours. Stored for {grip.device}
+        .
+      </p>
+      <Slider
+        label="Wrist position"
+        unit="cm"
+        most={100 * largestGripOffset.ahead}
+        value={grip.aheadCm}
+        set={(aheadCm) => correct({ aheadCm })}
+      />
+      <Slider
+        label="Wrist angle"
+        unit="°"
+        most={60}
+        value={grip.leanDegrees}
+        set={(leanDegrees) => correct({ leanDegrees })}
+      />
+      <Button label="Reset" aria-label="Reset grip" onClick={() => correct({ aheadCm: 0, leanDegrees: 0 })} />
+    </section>
+  );
+}
+
 /** The estimator and the measurements of the body. */
 export const BodyPage = ({ state, actions }: PanelPageProps) => (
   <>
@@ -123,5 +187,6 @@ export const BodyPage = ({ state, actions }: PanelPageProps) => (
       </p>
     </section>
     <Measures state={state} actions={actions} />
+    {state.grip && <Grip grip={state.grip} actions={actions} />}
   </>
 );

@@ -2,7 +2,7 @@ import { firstLine, reasonOf } from 'threepoint/core';
 import { exportMotion, type MotionFormat, type MotionWriter } from 'threepoint/motion';
 import { avatarMotionWriter } from 'threepoint/three';
 import { offerDownload } from 'threepoint-ui';
-import { decoders } from '../../scene/decoders';
+import { createDecodingLoader } from '../../scene/decoders';
 import { estimatorTexts } from '../session/estimator-texts';
 import type { StageParts } from '../stage/stage-parts';
 import type { ExportChoice, ExportState } from './panel-state';
@@ -65,7 +65,8 @@ export class MotionExport {
   async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
     if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
     const { avatar } = this.#parts;
-    return avatarMotionWriter(new File([await avatar.file()], avatar.name), { decoders });
+    const loader = await createDecodingLoader();
+    return avatarMotionWriter(new File([await avatar.file()], avatar.name), { loader });
   }
 
   #setState(state: ExportState | null): void {

@@ -14,9 +14,9 @@ import type { FileOpener } from '../input/file-opener';
 import type { Settings, StoredSettings } from '../session/settings';
 import type { StageParts } from '../stage/stage-parts';
 import type { MotionExport } from './motion-export';
-import type { ExportChoice, PanelState } from './panel-state';
+import type { ExportChoice, GripCorrection, PanelState } from './panel-state';
 
-function bodyActions({ store, body, notices, userCalibration }: StageParts, measuring: CalibrationControl) {
+function bodyActions({ store, body, notices, userCalibration, onChange }: StageParts, measuring: CalibrationControl) {
   return {
     chooseEstimator(name: EstimatorName) {
       store.remember({ estimator: name });
@@ -37,6 +37,13 @@ function bodyActions({ store, body, notices, userCalibration }: StageParts, meas
       else userCalibration.calibrateForGood(calibration, 'by hand');
     },
     resetCalibration: () => userCalibration.resetCalibration(),
+    correctGrip({ device, aheadCm, leanDegrees }: GripCorrection) {
+      const offset = { ahead: aheadCm / 100, lean: (leanDegrees * Math.PI) / 180 };
+      const gripOffsets = { ...body.userCalibration.gripOffsets, [device]: offset };
+      body.setGripOffsets(gripOffsets);
+      store.remember({ gripOffsets });
+      onChange();
+    },
   };
 }
 

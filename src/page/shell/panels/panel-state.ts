@@ -23,6 +23,14 @@ export interface ExportState {
   readonly secondsLeft: number | null;
 }
 
+/** How the user holds the controllers of one device, compared with the average user. */
+export interface GripCorrection {
+  readonly device: string;
+  /** How much further ahead of the wrist [cm], and how much steeper [degrees] the controller is held. */
+  readonly aheadCm: number;
+  readonly leanDegrees: number;
+}
+
 /** Everything that the panel shows, the settings among it. The panel itself has no state. */
 export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   readonly estimator: EstimatorName;
@@ -48,6 +56,8 @@ export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   readonly armSpanCm: number;
   readonly forearmCm: number | null;
   readonly eyeHeightCm: number;
+  /** The correction of the controllers that were held last; null: none were. */
+  readonly grip: GripCorrection | null;
   readonly emulated: boolean;
   readonly recorder: RecorderState;
   readonly exporting: ExportState | null;

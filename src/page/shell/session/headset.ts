@@ -1,6 +1,5 @@
 import type { WebGLRenderer } from 'three';
-import { firstLine, type HapticPulse, reasonOf } from 'threepoint/core';
-import type { Avatar, BodyTracker } from 'threepoint/three';
+import { firstLine, type HapticPulse, type PaperMethod, reasonOf } from 'threepoint/core';
 import {
   type BoundarySize,
   type DeviceCommands,
@@ -9,15 +8,17 @@ import {
   drawSession,
   endSession,
   FrameRateControl,
+  gripDevice,
   isSessionOffered,
   playPulses,
   readBoundary,
   requestPassthroughSession,
   requestVrSession,
   type Savings,
-  type TrackedSession,
   type XrFault,
-} from 'threepoint/webxr';
+} from 'threepoint/internal';
+import type { Avatar, BodyTracker } from 'threepoint/three';
+import type { TrackedSession } from 'threepoint/webxr';
 import { type Emulator, installEmulator } from '../../emulator/emulator';
 import { type Quality, reduceEmulatedResolution } from '../../scene/renderer';
 import type { PageContext } from './page-context';
@@ -63,7 +64,7 @@ interface Session {
 /** The headset that is worn, real or emulated, and the session in it. */
 export class Headset {
   readonly #context: PageContext;
-  readonly #tracker: BodyTracker<Avatar | null>;
+  readonly #tracker: BodyTracker<Avatar | null, PaperMethod>;
   readonly #renderer: WebGLRenderer;
   readonly #quality: Quality;
   #listener: HeadsetListener | null = null;
@@ -76,7 +77,12 @@ export class Headset {
   #real = false;
   #passthroughOffered = false;
 
-  constructor(context: PageContext, tracker: BodyTracker<Avatar | null>, renderer: WebGLRenderer, quality: Quality) {
+  constructor(
+    context: PageContext,
+    tracker: BodyTracker<Avatar | null, PaperMethod>,
+    renderer: WebGLRenderer,
+    quality: Quality,
+  ) {
     this.#context = context;
     this.#tracker = tracker;
     this.#renderer = renderer;
@@ -276,6 +282,16 @@ export class Headset {
     this.#follow(xr, room, passthrough);
   }
 
+  /** Remembers which controllers are held: the panel corrects their grip, also after the session. */
+  #rememberGrip(sources: Iterable<XRInputSource>): void {
+    const { store, changes } = this.#context;
+    for (const { hand, gripSpace, profiles } of sources) {
+      if (!gripSpace || hand) continue;
+      store.remember({ gripDevice: gripDevice(profiles) });
+      changes.emit();
+    }
+  }
+
   /** Follows the session until it ends. */
   #follow(xr: XRSession, room: BoundarySize | null, passthrough: boolean): void {
     // The emulator's rates are names alone: it draws when its window does.
@@ -291,6 +307,8 @@ export class Headset {
       this.#listener?.visibilityChanged();
     });
     xr.addEventListener('frameratechange', () => this.#listener?.rateChanged());
+    xr.addEventListener('inputsourceschange', ({ added }) => this.#rememberGrip(added));
+    this.#rememberGrip(xr.inputSources);
     if (!this.#context.settings.actor) this.#emulator?.release();
   }
 

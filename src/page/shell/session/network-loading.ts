@@ -1,4 +1,5 @@
-import type { BodySolverOptions } from 'threepoint';
+import type { LoadNetwork } from 'threepoint';
+import type { PaperMethod } from 'threepoint/core';
 import { type Notices, pageFolder } from 'threepoint-ui';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
@@ -12,7 +13,7 @@ export function createNetworkLoader(options: {
   readonly provider: Switches['ep'];
   readonly notices: Pick<Notices, 'show'>;
   readonly loading: Pick<PageLoading, 'report'>;
-}): BodySolverOptions['networks'] {
+}): LoadNetwork<PaperMethod> {
   const { provider, notices, loading } = options;
   const networksArrive = import('threepoint/onnx').then(({ createInferenceWorker, onnxNetworks }) =>
     onnxNetworks({

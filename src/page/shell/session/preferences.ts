@@ -6,6 +6,8 @@ import {
   calibrationProblem,
   estimatorNames,
   handTiltsSchema,
+  largestGripOffset,
+  numberBetween,
   skinTones,
 } from 'threepoint/core';
 import * as v from 'valibot';
@@ -21,6 +23,13 @@ const calibration = v.pipe(
   v.check((measures) => calibrationProblem(measures) === null, 'no person has these measurements'),
 );
 
+/** The largest offsets of grips [m, rad]. */
+const { ahead, lean } = largestGripOffset;
+const gripOffsets = v.record(
+  v.pipe(v.string(), v.maxLength(100)),
+  v.object({ ahead: numberBetween(-ahead, ahead), lean: numberBetween(-lean, lean) }),
+);
+
 const boneName = v.custom<BoneName>(
   (name) => typeof name === 'string' && boneNames.has(name),
   'there is no bone of this name',
@@ -33,6 +42,10 @@ export const boneMap = v.record(
 
 const schema = v.object({
   calibration: v.optional(calibration),
+  /** The user's corrections of how they hold controllers, by device; not part of a calibration that is reset. */
+  gripOffsets: v.optional(gripOffsets),
+  /** The device that was held last, which the panel corrects. */
+  gripDevice: v.optional(v.pipe(v.string(), v.maxLength(100))),
   estimator: v.optional(v.picklist(estimatorNames)),
   palette: v.optional(v.pipe(v.string(), v.maxLength(32))),
   builtInBody: v.optional(v.picklist(builtInBodies)),

@@ -1,6 +1,7 @@
-import type { Body, BodySolverOptions } from 'threepoint';
-import type { PageClock } from 'threepoint/core';
-import type { Avatar, BodyTracker, GazeTargets } from 'threepoint/three';
+import type { Body, LoadNetwork } from 'threepoint';
+import type { PageClock, PaperMethod } from 'threepoint/core';
+import type { GazeTargets } from 'threepoint/internal/three';
+import type { Avatar, BodyTracker } from 'threepoint/three';
 import type { ServerPresence } from 'threepoint-ui';
 import type { Quality } from '../../scene/renderer';
 import type { FrameTiming } from './frame-timing';
@@ -15,11 +16,11 @@ export interface SessionParts extends PageContext {
   readonly clock: PageClock;
   readonly loading: PageLoading;
   readonly timing: FrameTiming;
-  readonly tracker: BodyTracker<Avatar | null>;
+  readonly tracker: BodyTracker<Avatar | null, PaperMethod>;
   /** The tracker's. */
-  readonly body: Body;
+  readonly body: Body<PaperMethod>;
   /** Loads separate networks for what is computed from recordings. */
-  readonly networks: BodySolverOptions['networks'];
+  readonly networks: LoadNetwork<PaperMethod>;
   readonly headset: Headset;
   readonly study: PageStudy;
   readonly server: ServerPresence;

@@ -7,8 +7,8 @@ import {
   reasonOf,
   type TrackingFrame,
 } from 'threepoint/core';
+import { ObjectHolds } from 'threepoint/internal/three';
 import type { Pose, Side } from 'threepoint/math';
-import { ObjectHolds } from 'threepoint/three';
 import type { SimulatedInput } from 'threepoint-games';
 import type { TaskPlace } from 'threepoint-study/participant';
 import type { MouseAim } from 'threepoint-ui';

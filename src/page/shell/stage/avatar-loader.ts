@@ -1,4 +1,3 @@
-import { avatarLimits, sha256Base64Url } from 'threepoint';
 import { type BoneMap, type BuiltInBody, builtInAvatarOf, type SkinTone } from 'threepoint/core';
 import {
   type CheckedAvatar,
@@ -9,8 +8,10 @@ import {
   readFileBones,
   withNamedBones,
 } from 'threepoint/files';
-import { type Avatar, bodyLabelOf, createAvatar, createAvatarBetweenFrames } from 'threepoint/three';
-import type { OwnAvatar } from 'threepoint-rooms';
+import { avatarLimits, sha256Base64Url } from 'threepoint/internal';
+import { bodyLabelOf, createAvatar, createAvatarBetweenFrames } from 'threepoint/internal/three';
+import type { Avatar } from 'threepoint/three';
+import type { OwnAvatar } from 'threepoint-rooms/internal';
 import { type FileKind, fileNameOf, pageFolder, readLimited } from 'threepoint-ui';
 import { decoders } from '../../scene/decoders';
 import type { BoneMapStore } from './bone-map-store';

@@ -1,6 +1,7 @@
 import type { Object3D } from 'three';
 import { type AvatarPose, estimatorNames, firstLine, reasonOf, recordOf, type TrackingFrame } from 'threepoint/core';
-import { type Avatar, palettes, weaveCloth } from 'threepoint/three';
+import { palettes, weaveCloth } from 'threepoint/internal/three';
+import type { Avatar } from 'threepoint/three';
 import { pageElement } from 'threepoint-ui';
 import type { MocapView, Span } from '../../mocap/mocap-view';
 import type { ClipView } from '../../mocap/motion-bones';

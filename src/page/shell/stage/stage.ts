@@ -1,7 +1,8 @@
 import type { TrackingFrame } from 'threepoint/core';
+import { defaultSavings, type Savings } from 'threepoint/internal';
+import { createDebugSkeleton, createHeadLossFade } from 'threepoint/internal/three';
 import type { Side } from 'threepoint/math';
-import { type Avatar, createDebugSkeleton, createHeadLossFade } from 'threepoint/three';
-import { defaultSavings, type Savings } from 'threepoint/webxr';
+import type { Avatar } from 'threepoint/three';
 import { createVrCaptions } from 'threepoint-ui/vr';
 import type { Watched } from '../../activity/activity';
 import { DesktopView, type Insets } from '../../scene/desktop-view';

@@ -9,8 +9,9 @@ import {
   UnknownBonesError,
 } from 'threepoint/core';
 import { type CheckedAvatar, MotionOnlyError } from 'threepoint/files';
-import { type Avatar, bodyLabelOf, weaveCloth } from 'threepoint/three';
-import type { OwnAvatar } from 'threepoint-rooms';
+import { bodyLabelOf, weaveCloth } from 'threepoint/internal/three';
+import type { Avatar } from 'threepoint/three';
+import type { OwnAvatar } from 'threepoint-rooms/internal';
 import { fileNameOf } from 'threepoint-ui';
 import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { SessionParts } from '../session/session-parts';

@@ -6,7 +6,7 @@ import {
   bidsMotionSidecar,
   bidsTable,
   bidsVersion,
-} from 'threepoint/motion';
+} from 'threepoint/internal';
 import { type StudyPlan, studyTitle } from '../../model/plan/plan';
 import type { DemographicsRecord, StudyRecord, TrialRecord } from '../../model/records/study-record';
 import { recordingTime } from '../../model/records/trial-clock';

@@ -9,12 +9,13 @@ const hasAscii = (bytes: Uint8Array, at: number, text: string): boolean =>
 
 export const isKtx2 = (bytes: Uint8Array): boolean => hasAscii(bytes, 1, 'KTX 20');
 
-/** Returns the size of a PNG, JPEG or WebP file by its header; null: it is none of them. */
+/** Returns the size of a PNG, JPEG, WebP or KTX2 file by its header; null: it is none of them. */
 export function imageSize(bytes: Uint8Array): ImageSize | null {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   try {
     if (hasAscii(bytes, 1, 'PNG')) return { width: view.getUint32(16), height: view.getUint32(20) };
     if (hasAscii(bytes, 0, 'RIFF') && hasAscii(bytes, 8, 'WEBP')) return webpSize(bytes, view);
+    if (isKtx2(bytes)) return { width: view.getUint32(20, true), height: view.getUint32(24, true) };
     if (view.getUint16(0) === 0xffd8) return jpegSize(view);
   } catch (error) {
     // Truncated: no image.

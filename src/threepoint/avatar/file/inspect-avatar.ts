@@ -114,7 +114,7 @@ export function inspectAvatar(
   const { extensionsRequired, extensionsUsed } = description;
   assertReadable(extensionsRequired, name, unpacked);
   limitScene(description, limit, limits);
-  limitImages(description, chunks.binary, name, limit, limits);
+  limitImages(description, chunks.binary, { name, limit, limits, ktx2: unpacked.includes('KHR_texture_basisu') });
   return unpacked.filter((extension) => extensionsUsed.includes(extension) || extensionsRequired.includes(extension));
 }
 
@@ -180,9 +180,7 @@ function limitScene({ nodes, meshes, accessors, skins, bufferViews }: Gltf, limi
 function limitImages(
   { images, bufferViews }: Gltf,
   binary: Uint8Array,
-  name: string,
-  limit: Limit,
-  limits: AvatarLimits,
+  { name, limit, limits, ktx2 }: { name: string; limit: Limit; limits: AvatarLimits; ktx2: boolean },
 ): void {
   limit('textures', images.length, limits.textures);
   let pixels = 0;
@@ -190,7 +188,7 @@ function limitImages(
     const where = bufferView === undefined ? undefined : bufferViews[bufferView];
     const start = where?.byteOffset ?? 0;
     const picture = where && binary.subarray(start, start + where.byteLength);
-    if (picture && isKtx2(picture)) throw new Error(`${name}: ${ktx2Advice}`);
+    if (picture && isKtx2(picture) && !ktx2) throw new Error(`${name}: ${ktx2Advice}`);
     const size = picture && imageSize(picture);
     if (!size) throw new Error(`${name}: picture ${i} is no PNG, JPEG or WebP`);
     limit(`pixels across picture ${i}`, Math.max(size.width, size.height), limits.texturePixels);

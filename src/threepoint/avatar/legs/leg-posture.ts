@@ -1,7 +1,7 @@
 import type { TrackedFeet } from '../../core/body/avatar-pose';
 import { sideSign } from '../../core/body/skeleton';
 import { type ElbowCircle, elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
-import { Gait } from '../../core/estimation/gait/gait';
+import type { Gait } from '../../core/estimation/gait/gait';
 import { type GaitPoints, yawOfHips } from '../../core/estimation/gait/gait-features';
 import { confidenceBeyond, followPin, handOverSeconds, makePin, type Pin } from '../../core/estimation/pin';
 import { wrapAngle } from '../../core/math/angle';
@@ -181,7 +181,7 @@ export class LegPosture {
   constructor(
     private proportions: LegProportions,
     private eyeHeight: number,
-    private readonly gait: Gait = new Gait(),
+    private readonly gait: Gait,
   ) {
     this.legs = this.own;
   }

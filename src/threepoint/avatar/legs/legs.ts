@@ -1,4 +1,5 @@
 import type { TrackedFeet } from '../../core/body/avatar-pose';
+import { Gait, type GaitNetwork } from '../../core/estimation/gait/gait';
 import type { GaitPoints } from '../../core/estimation/gait/gait-features';
 import { type Quat, quat, slerp } from '../../core/math/quat';
 import { type Side, sides } from '../../core/math/side';
@@ -60,11 +61,15 @@ const halfway = (before: Quat, after: Quat): Quat => slerp(before, after, 0.5, h
 
 /** The legs of an avatar: a leg posture on the bones of its rig. */
 export class Legs {
-  private readonly posture = new LegPosture(averageLegs, averageEyeHeight);
+  private readonly posture: LegPosture;
   /** null: the rig lacks a bone of a leg. */
   private readonly helpers: Readonly<Record<Side, LegHelpers>> | null;
 
-  constructor(private readonly rig: Rig) {
+  constructor(
+    private readonly rig: Rig,
+    gait: GaitNetwork,
+  ) {
+    this.posture = new LegPosture(averageLegs, averageEyeHeight, new Gait(gait));
     const helpersOf = (side: Side): LegHelpers => ({
       hip: rig.addHelper(`${side}UpperLeg`, 'half'),
       knee: rig.addHelper(`${side}LowerLeg`, 'half'),

@@ -1,7 +1,7 @@
 import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
 import { Bone, Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
 import { type JointName, jointNames, parentOf } from '../../core/body/joints';
-import { fromAxisAngle, multiply, type Quat, quat } from '../../core/math/quat';
+import { copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat } from '../../core/math/quat';
 import { copyVec3, distance, type MutableVec3, up, type Vec3, vec3 } from '../../core/math/vec3';
 
 export const legJoints = [
@@ -38,6 +38,8 @@ export interface RigBone {
   placed: boolean;
   /** The drawn position in this frame, floor frame [m]. */
   readonly drawn: MutableVec3;
+  /** The rotation from T-pose with which the bone was placed last, floor frame. */
+  readonly turn: MutableQuat;
 }
 
 /** An added joint at the origin of a bone, with the bone's stretch and another rotation. */
@@ -164,6 +166,7 @@ export class Rig {
     setWorld(bone, at, rotationFromRest, bone.world);
     bone.placed = true;
     copyVec3(at, bone.drawn);
+    copyQuat(rotationFromRest, bone.turn);
     if (seen) this.joints[name] = bone.drawn;
   }
 
@@ -278,6 +281,7 @@ function readRig(vrm: VRM): Map<AvatarJoint, RigBone> {
       world: new Matrix4(),
       placed: false,
       drawn: vec3(0, 0, 0),
+      turn: quat(0, 0, 0, 1),
     };
     bones.set(name, target);
     return target;

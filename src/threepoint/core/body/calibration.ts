@@ -2,6 +2,20 @@ import { sides } from '../math/side';
 import { type HandTilts, isPlausibleTilt, steepestHandTilt } from './hand-tilt';
 import type { TrackerOffsets } from './tracker-offsets';
 
+/** A user's correction of how they hold a controller. */
+export interface GripOffset {
+  /** How much further ahead of the wrist the middle of the fist lies [m]; below 0: nearer. */
+  readonly ahead: number;
+  /** How much further the handle leans towards the fingers [rad]. */
+  readonly lean: number;
+}
+
+/** The corrections by device: the first known name of an input source's profiles. */
+export type GripOffsets = Readonly<Record<string, GripOffset>>;
+
+/** The largest corrections [m, rad]. */
+export const largestGripOffset: GripOffset = { ahead: 0.1, lean: Math.PI / 3 };
+
 /** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
   /** Height [m] of the headset's origin (between the eyes) above the floor, standing upright and looking ahead. */
@@ -19,6 +33,8 @@ export interface Calibration {
   readonly handTilts?: HandTilts | undefined;
   /** The pose of each joint in the frame of its tracker. A tracker without an offset is ignored. */
   readonly trackerOffsets?: TrackerOffsets | undefined;
+  /** The user's corrections of how they hold controllers. Absent: none; later measures keep them. */
+  readonly gripOffsets?: GripOffsets | undefined;
 }
 
 /** The steepest plausible tilt of a headset [rad]; at a steeper one the user was not looking ahead. */
@@ -97,7 +113,7 @@ function includesValues(value: unknown, other: unknown): boolean {
  * the trackers' offsets.
  */
 export const calibrationProblem = (calibration: Calibration): string | null =>
-  bodyProblem(calibration) ?? tiltProblem(calibration);
+  bodyProblem(calibration) ?? tiltProblem(calibration) ?? gripProblem(calibration);
 
 /**
  * Throws a RangeError with the sentence of `calibrationProblem` if there is a problem, or the value is no calibration.
@@ -162,6 +178,16 @@ function tiltProblem({ gazePitch = 0, handTilts }: Calibration): string | null {
     if (tilt && !isPlausibleTilt(tilt)) {
       return `A ${side} hand’s tilt of ${radians(Math.hypot(tilt.pitch, tilt.yaw))} exceeds ${radians(steepestHandTilt)}.`;
     }
+  }
+  return null;
+}
+
+/** Returns why the offsets of grips are implausible; null: they are plausible. */
+function gripProblem({ gripOffsets = {} }: Calibration): string | null {
+  const { ahead, lean } = largestGripOffset;
+  for (const [device, offset] of Object.entries(gripOffsets)) {
+    if (Math.abs(offset.ahead) <= ahead && Math.abs(offset.lean) <= lean) continue;
+    return `The offset of ${device} exceeds ${metres(ahead)} or ${lean.toFixed(2)} rad.`;
   }
   return null;
 }

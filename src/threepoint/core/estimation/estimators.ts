@@ -3,16 +3,15 @@ import { transformJoints } from './joint-positions';
 import type { JointSource } from './joint-source';
 import { createDeviceSource } from './methods/device';
 import { createHandsOnly } from './methods/hands-only';
-import { createPaper } from './methods/paper';
 import { createResidual } from './methods/residual';
 import type { PoseRegressor } from './networks/pose-regressor';
 import { Pipeline, type PipelineOptions } from './pipeline';
-import { type EstimatorName, estimatorNames, type PoseEstimator } from './pose-estimator';
+import { type EstimatorName, estimatorNames, type PaperMethod, type PoseEstimator } from './pose-estimator';
 
 export type NetworkName = 'paper' | 'learned';
 
 /** The methods that cannot work without their network. */
-type NetworkMethod = NetworkName | 'paper-published';
+export type NetworkMethod = NetworkName | PaperMethod;
 
 export const needsRegressor = (name: EstimatorName): name is NetworkMethod =>
   name === 'paper' || name === 'paper-published' || name === 'learned';
@@ -40,29 +39,29 @@ const ikAlone: JointSource = {
 export const createIk = (calibration: Calibration, options?: PipelineOptions): Pipeline =>
   new Pipeline('ik', calibration, ikAlone, options);
 
-/**
- * Creates an estimator with a network as a pipeline, for benches of single stages; throws where the regressor belongs
- * to another method.
- */
-export function createWithNetwork(
+/** Throws an Error if a regressor belongs to another method. */
+export function assertNetwork(
   name: NetworkMethod,
+  regressor: PoseRegressor | null,
+): asserts regressor is PoseRegressor {
+  const network = networkOf(name);
+  if (regressor?.contract.name !== network) throw new Error(`estimator “${name}” needs the regressor of “${network}”`);
+}
+
+/** Creates an estimator by the learned network; throws an Error for the regressor of another method. */
+export function createLearned(
   calibration: Calibration,
   regressor: PoseRegressor | null,
   options?: PipelineOptions,
 ): Pipeline {
-  const network = networkOf(name);
-  if (regressor?.contract.name !== network) throw new Error(`estimator “${name}” needs the regressor of “${network}”`);
-  const source = network === 'paper' ? createPaper(regressor) : createResidual(calibration, regressor);
-  return new Pipeline(name, calibration, source, options);
+  assertNetwork('learned', regressor);
+  return new Pipeline('learned', calibration, createResidual(calibration, regressor), options);
 }
 
 /**
  * Creates an estimator by its name. Throws an Error for a method without the regressor that it needs; `device` without
  * that of `learned` falls back on IK. Throws a RangeError for an unknown name, or for measures [m] that no person has.
  * `pinning` of threepoint/trackers draws the trackers of frames.
- *
- * `paper-published` is `paper`, with its regressor, but with the orientations of section 3.5 of the paper: no torso and
- * arm fitting, no filters, no trackers beyond head and hands.
  *
  * @example
  * const estimator = createEstimator('learned', calibration, await loadLearned());
@@ -75,12 +74,17 @@ export function createEstimator(
 ): PoseEstimator {
   assertCalibration(calibration);
   options.pinning?.assertOffsets(calibration);
-  if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor, options);
+  if (name === 'learned') return createLearned(calibration, regressor, options);
   if (name === 'device') {
     const otherwise = regressor ? createResidual(calibration, regressor) : ikAlone;
     return new Pipeline(name, calibration, createDeviceSource(otherwise), options);
   }
   if (name === 'ik') return createIk(calibration, options);
   if (name === 'hands-only') return createHandsOnly(calibration);
+  if (needsRegressor(name)) {
+    assertNetwork(name, regressor);
+    const create = regressor.methods?.[name];
+    if (create) return create(calibration, options);
+  }
   throw new RangeError(`“${String(name)}” is not an estimator. Use one of ${estimatorNames.join(', ')}.`);
 }

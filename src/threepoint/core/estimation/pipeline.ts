@@ -15,7 +15,7 @@ import { type HandTurn, makeIkSolution, makeThreePoints, solveIk } from './ik/so
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { limitJoints, makeLimitJointsState, resetLimitJoints } from './limit-joints';
-import { makePaperOrientations, type PaperOrientations, paperOrientations } from './methods/paper-orientations';
+import type { OrientationRule } from './methods/paper-orientations';
 import {
   calibrateHandTilts,
   estimateHandTilt,
@@ -94,6 +94,8 @@ export interface PipelineOptions {
   readonly frameByFrame?: boolean;
   /** Draws the trackers of frames; absent: frames must have none. */
   readonly pinning?: Pinning | undefined;
+  /** Replaces torso and arm fitting, frame by frame; absent: these draw the body. */
+  readonly orientations?: OrientationRule | undefined;
 }
 
 /**
@@ -124,14 +126,13 @@ export class Pipeline implements PoseEstimator {
       : tilts.turns[side];
   };
   readonly #frameByFrame: boolean;
-  /** The body by section 3.5 of the paper, frame by frame; null: by torso and arm fitting. */
-  readonly #orientations: PaperOrientations | null;
+  readonly #orientations: OrientationRule | undefined;
   readonly #pins: Pins | undefined;
 
   constructor(name: EstimatorName, calibration: Calibration, source: JointSource, options: PipelineOptions = {}) {
     this.name = name;
-    this.#orientations = name === 'paper-published' ? makePaperOrientations() : null;
-    this.#frameByFrame = options.frameByFrame ?? this.#orientations !== null;
+    this.#orientations = options.orientations;
+    this.#frameByFrame = options.frameByFrame ?? options.orientations !== undefined;
     this.#pins = options.pinning?.create(calibration);
     this.source = source;
     this.state = makeEstimatorState(calibration);
@@ -200,8 +201,7 @@ export class Pipeline implements PoseEstimator {
     pose.rightHand = frame.rightHand;
     pose.fingers = frame.fingers ?? unknownFingers;
     if (this.#orientations) {
-      const { hips, trunk, clavicles, arms } = this.#orientations;
-      paperOrientations(state.joints, completed, body.torso, body.arm, this.#orientations);
+      const { hips, trunk, clavicles, arms } = this.#orientations(state.joints, completed, body.torso, body.arm);
       copyVec3(hips, pose.body.hipsPosition);
       writeLocalRotations(trunk, head.orientation, clavicles, arms, pose.body.localRotations);
     } else this.#fit(frame, head, completed, step);

@@ -9,6 +9,11 @@ export type ThreePointName = (typeof threePointNames)[number];
 export const estimatorNames = [...threePointNames, 'device'] as const;
 export type EstimatorName = (typeof estimatorNames)[number];
 
+/** The methods of the paper, which `onnxNetworks` brings with its network. */
+export type PaperMethod = 'paper' | 'paper-published';
+/** The methods of every body. */
+export type DefaultMethod = Exclude<EstimatorName, PaperMethod>;
+
 /** Deferred inference for one frame. */
 export interface InferenceRequest {
   /**

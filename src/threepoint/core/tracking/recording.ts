@@ -1,4 +1,4 @@
-import type { Calibration } from '../body/calibration';
+import type { Calibration, GripOffsets } from '../body/calibration';
 import { type Fingers, fingerNames, type HandShape, lerpHandShape, limitBend, makeHandShape } from '../body/hand-shape';
 import type { HandTilts } from '../body/hand-tilt';
 import { isFiniteNumber, isObject } from '../json';
@@ -160,11 +160,22 @@ function parseHandTilts(value: unknown): HandTilts | null {
   return left || right ? { ...(left && { left }), ...(right && { right }) } : null;
 }
 
+function parseGripOffsets(value: unknown): GripOffsets | null {
+  if (!isObject(value)) return null;
+  const offsets = Object.entries(value).flatMap(([device, offset]) => {
+    if (!isObject(offset)) return [];
+    const { ahead, lean } = offset;
+    return isFiniteNumber(ahead) && isFiniteNumber(lean) ? [[device, { ahead, lean }] as const] : [];
+  });
+  return Object.fromEntries(offsets);
+}
+
 function parseCalibration(value: unknown): Calibration | null {
   if (value === null || value === undefined) return null;
   if (isObject(value) && isFiniteNumber(value.eyeHeight) && isFiniteNumber(value.armSpan)) {
     const { eyeHeight, armSpan, forearm, gazePitch } = value;
     const handTilts = parseHandTilts(value.handTilts);
+    const gripOffsets = parseGripOffsets(value.gripOffsets);
     if (eyeHeight > 0 && armSpan > 0) {
       return {
         eyeHeight,
@@ -172,6 +183,7 @@ function parseCalibration(value: unknown): Calibration | null {
         ...(isFiniteNumber(forearm) && { forearm }),
         ...(isFiniteNumber(gazePitch) && { gazePitch }),
         ...(handTilts && { handTilts }),
+        ...(gripOffsets && { gripOffsets }),
       };
     }
   }

@@ -1,5 +1,6 @@
-import { BodySolver, ReplayedBody } from 'threepoint';
+import { Body } from 'threepoint';
 import { actorFrame, defaultCalibration, forwardKinematics, skeletonFromCalibration } from 'threepoint/core';
+import { ReplayedBody } from 'threepoint/internal';
 import { expect, test } from 'vitest';
 import { createActor } from '../../../../src/page/emulator/actor';
 import { TrackingSource } from '../../../../src/page/shell/input/tracking-source';
@@ -13,7 +14,7 @@ const skeleton = skeletonFromCalibration(defaultCalibration);
 /** A page whose headset is worn by a person who moves as the actor does, with its recorder and its body. */
 function worn() {
   const recorder = new Recorder();
-  const body = new BodySolver({
+  const body = new Body({
     estimator: 'ik',
     calibration: defaultCalibration,
     networks: () => Promise.reject(new Error('inverse kinematics has none')),

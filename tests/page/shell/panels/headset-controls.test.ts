@@ -1,7 +1,14 @@
 import { Group, Raycaster, Vector3 } from 'three';
-import { defaultCalibration, GazePointer, MutablePointer, type Pointer, type TrackingFrame } from 'threepoint/core';
+import {
+  defaultCalibration,
+  type EstimatorName,
+  GazePointer,
+  MutablePointer,
+  type Pointer,
+  type TrackingFrame,
+} from 'threepoint/core';
+import { DeviceCommands } from 'threepoint/internal';
 import { fromAxes, identity, type Ray, vec3 } from 'threepoint/math';
-import { DeviceCommands } from 'threepoint/webxr';
 import type { CalibrationStep } from 'threepoint-ui';
 import { createVrPointers } from 'threepoint-ui/vr';
 import { describe, expect, test, vi } from 'vitest';

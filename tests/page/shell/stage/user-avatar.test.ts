@@ -1,8 +1,9 @@
 import { readFileSync } from 'node:fs';
 import { type Mesh, type Object3D, PropertyBinding, Vector3, type WebGLRenderer } from 'three';
 import { actorFrame, createEstimator, defaultCalibration } from 'threepoint/core';
+import { palettes, skinColors } from 'threepoint/internal/three';
 import { distance } from 'threepoint/math';
-import { type Avatar, BodyTracker, palettes, skinColors } from 'threepoint/three';
+import { type Avatar, BodyTracker } from 'threepoint/three';
 import { describe, expect, test } from 'vitest';
 import { createPreferenceStore } from '../../../../src/page/shell/session/preferences';
 import type { SessionParts } from '../../../../src/page/shell/session/session-parts';

@@ -1,4 +1,5 @@
-import { createEstimator, skeletonFromCalibration } from 'threepoint';
+import { skeletonFromCalibration } from 'threepoint';
+import { createEstimator } from 'threepoint/core';
 import { expect, test } from 'vitest';
 
 const centimetres = { eyeHeight: 165, armSpan: 156 };

@@ -3,13 +3,10 @@ import { type AvatarPose, copyAvatarPose } from '../../../../src/threepoint/core
 import { forwardKinematics } from '../../../../src/threepoint/core/body/forward-kinematics';
 import { jointNames } from '../../../../src/threepoint/core/body/joints';
 import { skeletonFromCalibration } from '../../../../src/threepoint/core/body/skeleton';
-import {
-  createEstimator,
-  createWithNetwork,
-  needsRegressor,
-} from '../../../../src/threepoint/core/estimation/estimators';
+import { createEstimator, needsRegressor } from '../../../../src/threepoint/core/estimation/estimators';
 import type { PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
 import type { Pipeline } from '../../../../src/threepoint/core/estimation/pipeline';
+import { createWithNetwork } from '../../../../src/threepoint/core/estimation/with-network';
 import { distance } from '../../../../src/threepoint/core/math/vec3';
 import { reportFigures } from '../../../reliability/report-figures';
 import { numbersIn } from '../numbers-in';

@@ -1,6 +1,7 @@
 import { describe, expect, test } from 'vitest';
-import { Gait, shippedGait } from '../../../../src/threepoint/core/estimation/gait/gait';
+import { Gait } from '../../../../src/threepoint/core/estimation/gait/gait';
 import { GaitFeatures, type GaitPoints } from '../../../../src/threepoint/core/estimation/gait/gait-features';
+import { shippedGait } from '../../../../src/threepoint/core/estimation/gait/shipped-gait';
 import { eyeHeight, standing, walking } from '../../avatar/walking-person';
 import { mirrorPoint, mirrorRotation } from './moving-person';
 
@@ -19,7 +20,7 @@ const mirrorOf =
   };
 
 function feetAfter(person: Person, seconds: number, rateHz = 60) {
-  const gait = new Gait();
+  const gait = new Gait(shippedGait);
   for (let frame = 0; frame <= seconds * rateHz; frame++)
     gait.update(person(frame / rateHz), eyeHeight, frame / rateHz);
   return gait.feet;
@@ -38,7 +39,7 @@ describe('expected feet', () => {
   });
 
   test('stand in turn when a person walks', () => {
-    const gait = new Gait();
+    const gait = new Gait(shippedGait);
     let onlyLeft = 0;
     let onlyRight = 0;
     for (let frame = 0; frame < 360; frame++) {
@@ -77,11 +78,11 @@ describe('expected feet', () => {
   });
 
   test('forget what was before a reset', () => {
-    const gait = new Gait();
+    const gait = new Gait(shippedGait);
     for (let frame = 0; frame < 120; frame++) gait.update(walking(frame / 60), eyeHeight, frame / 60);
     gait.reset();
     gait.update(standing(0), eyeHeight, 2);
-    const fresh = new Gait();
+    const fresh = new Gait(shippedGait);
     fresh.update(standing(0), eyeHeight, 0);
     expect(gait.feet).toEqual(fresh.feet);
   });

@@ -1,6 +1,7 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import * as ort from 'onnxruntime-web/wasm';
+import { paperMethods } from '../../../../src/threepoint/core/estimation/methods/paper-methods';
 import { createPlainRegressor } from '../../../../src/threepoint/core/estimation/networks/learned-network';
 import type { ModelContract, PoseRegressor } from '../../../../src/threepoint/core/estimation/networks/pose-regressor';
 
@@ -31,7 +32,7 @@ export async function openShippedModel(name: NetworkName): Promise<PoseRegressor
   ort.env.wasm.numThreads = 1;
   const session = await ort.InferenceSession.create(bytes, { executionProviders: ['wasm'] });
   const [input, output] = [contract.inputs[0]!, contract.outputs[0]!];
-  return {
+  const regressor: PoseRegressor = {
     contract,
     provider: 'wasm',
     async run(features) {
@@ -40,4 +41,5 @@ export async function openShippedModel(name: NetworkName): Promise<PoseRegressor
     },
     dispose: () => session.release(),
   };
+  return name === 'paper' ? { ...regressor, methods: paperMethods(regressor) } : regressor;
 }

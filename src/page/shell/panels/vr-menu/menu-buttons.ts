@@ -6,7 +6,7 @@ import {
   type SkinTone,
   skinTones,
 } from 'threepoint/core';
-import { bodyLabelOf } from 'threepoint/three';
+import { bodyLabelOf } from 'threepoint/internal/three';
 import type { CalibrationStep } from 'threepoint-ui';
 import {
   type ActivityMenu,

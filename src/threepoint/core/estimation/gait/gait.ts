@@ -4,7 +4,6 @@ import type { Mutable } from '../../records';
 import type { Tensor } from '../networks/model-weights';
 import { Perceptron } from '../networks/perceptron';
 import { GaitFeatures, type GaitPoints, gaitFeatureCount, yawOfHips } from './gait-features';
-import shipped from './gait-network.json' with { type: 'json' };
 
 /**
  * The contents of a file of gait weights: its training data, and each tensor's shape and numbers
@@ -37,8 +36,6 @@ export interface ExpectedFoot {
 export const gaitOutputCount = 12;
 const [standingAt, yawAt, liftAt] = [4, 6, 10] as const;
 
-export const shippedGait: GaitNetwork = shipped;
-
 /**
  * Predicts the mean foot pose from a second of hips, head and hands; avatar/legs/stepping turns it into discrete steps.
  * A small network, computed for a person and their mirror image and averaged.
@@ -54,7 +51,7 @@ export class Gait {
   readonly #perceptron: Perceptron;
 
   /** Throws an Error if the weights do not belong to a gait network. */
-  constructor({ tensors }: GaitNetwork = shippedGait) {
+  constructor({ tensors }: GaitNetwork) {
     const weights = new Map<string, Tensor>(
       Object.entries(tensors).map(([name, { shape, numbers }]) => [
         name,

@@ -36,6 +36,20 @@ const makeArm = () => ({
   rotations: { upperArm: quat(0, 0, 0, 1), lowerArm: quat(0, 0, 0, 1), hand: quat(0, 0, 0, 1) },
 });
 
+/** Returns the body's orientations of one frame from its six joints; the next call overwrites them. */
+export type OrientationRule = (
+  joints: JointPositions,
+  frame: CompletedFrame,
+  bones: TorsoBones,
+  arm: LimbBones,
+) => PaperOrientations;
+
+/** Creates the rule of section 3.5 of the paper. */
+export function createPaperOrientations(): OrientationRule {
+  const target = makePaperOrientations();
+  return (joints, frame, bones, arm) => paperOrientations(joints, frame, bones, arm, target);
+}
+
 export const makePaperOrientations = (): PaperOrientations => ({
   hips: vec3(0, 0, 0),
   trunk: makeTrunkRotations(),

@@ -1,3 +1,7 @@
+import type { Calibration } from '../../body/calibration';
+import type { PipelineOptions } from '../pipeline';
+import type { PaperMethod, PoseEstimator } from '../pose-estimator';
+
 /** One tensor of a model, as its contract file states it. */
 interface TensorContract {
   readonly name: string;
@@ -47,6 +51,9 @@ export interface ModelContract {
   readonly weights?: FlatWeights;
 }
 
+/** Creates an estimator of one method, with its network. */
+export type EstimatorFactory = (calibration: Calibration, options: PipelineOptions) => PoseEstimator;
+
 /** A network that maps one flat feature vector to one flat output vector. */
 export interface PoseRegressor {
   readonly contract: ModelContract;
@@ -62,5 +69,7 @@ export interface PoseRegressor {
    * The next run overwrites the numbers.
    */
   readonly runNow?: (features: Float32Array) => Float32Array;
+  /** The methods that need this network and that a body without it does not contain. */
+  readonly methods?: Readonly<Record<PaperMethod, EstimatorFactory>> | undefined;
   dispose(): Promise<void>;
 }
