@@ -1,7 +1,8 @@
 import type { WebGLRenderer } from 'three';
 import type { PaperMethod, TrackingDegradation } from 'threepoint/core';
+import { endSession } from 'threepoint/internal';
 import type { Avatar, BodyTracker } from 'threepoint/three';
-import { endSession, type TrackedSession } from 'threepoint/webxr';
+import type { TrackedSession } from 'threepoint/webxr';
 import type { Emulator } from '../emulator/emulator';
 import { createHeadsetCamera, type Quality, reduceEmulatedResolution } from '../scene/renderer';
 import { home } from '../shell/activity-registry';

@@ -1,5 +1,6 @@
 import type { XRDevice, XRDeviceConfig } from 'iwer';
 import { allReleased, type Buttons, type TrackingFrame } from 'threepoint/core';
+import { endSession } from 'threepoint/internal';
 import {
   composeTransforms,
   fromAxes,
@@ -10,7 +11,7 @@ import {
   type TrackedPose,
   vec3,
 } from 'threepoint/math';
-import { endSession, gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
+import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from 'threepoint/webxr';
 import { closeOnEscape } from 'threepoint-ui';
 
 /** The initial head and hands of a person of 1.70 m, who sees both hands [m]. */

@@ -12,7 +12,7 @@ import {
   type Vec3,
   vec3,
 } from 'threepoint/math';
-import { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
+import type { LegPosture } from '../../../src/threepoint/avatar/legs/leg-posture';
 import type { Calibration } from '../../../src/threepoint/core/body/calibration';
 import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kinematics';
 import { averageSkeleton } from '../../../src/threepoint/core/body/skeleton';
@@ -21,7 +21,7 @@ import { yawOfHips } from '../../../src/threepoint/core/estimation/gait/gait-fea
 import { clamp, smoothstep } from '../../../src/threepoint/core/math/damper';
 import { evenly } from '../core/arbitraries';
 import { tracked } from '../core/estimation/moving-person';
-import { eyeHeight, proportions } from './walking-person';
+import { createLegs, eyeHeight, proportions } from './walking-person';
 
 /** A posture of a person's head and hands. Lengths [m], angles [rad]. */
 export interface Posture {
@@ -117,7 +117,7 @@ export interface ActedFrame {
 export function actedFrames(script: readonly Act[]): ActedFrame[] {
   const estimator = createIk(calibration);
   const skeleton = averageSkeleton(calibration);
-  const drawn = new LegPosture(legProportions, eyeHeight);
+  const drawn = createLegs(legProportions);
   const acted: ActedFrame[] = [];
   let from = upright;
   let start = 0;

@@ -187,8 +187,7 @@ describe('eyes', () => {
       },
       readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url)),
     );
-    const { vrm } = await parseAvatar(bytes, 'painted-eyes.vrm');
-    const avatar = createAvatar({ name: 'painted-eyes.vrm', vrm, notes: [], nodeIndices: new Map() });
+    const avatar = createAvatar(await parseAvatar(bytes, 'painted-eyes.vrm'));
     avatar.setCalibration(defaultCalibration);
     const lookRight = () => {
       const shapes: number[] = [];

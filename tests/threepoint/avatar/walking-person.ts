@@ -14,7 +14,7 @@ export const proportions: LegProportions = {
 };
 
 /** Returns the legs that the page draws for a person of these measures. */
-export const createLegs = (): LegPosture => new LegPosture(proportions, eyeHeight, new Gait(shippedGait));
+export const createLegs = (of = proportions): LegPosture => new LegPosture(of, eyeHeight, new Gait(shippedGait));
 
 /** A person 1.6 m high at the eyes who stands at the origin, hands hanging, and leans and sways a little. */
 export function standing(time: number): GaitPoints {

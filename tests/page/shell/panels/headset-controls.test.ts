@@ -1,12 +1,5 @@
 import { Group, Raycaster, Vector3 } from 'three';
-import {
-  defaultCalibration,
-  type EstimatorName,
-  GazePointer,
-  MutablePointer,
-  type Pointer,
-  type TrackingFrame,
-} from 'threepoint/core';
+import { defaultCalibration, GazePointer, MutablePointer, type Pointer, type TrackingFrame } from 'threepoint/core';
 import { DeviceCommands } from 'threepoint/internal';
 import { fromAxes, identity, type Ray, vec3 } from 'threepoint/math';
 import type { CalibrationStep } from 'threepoint-ui';
