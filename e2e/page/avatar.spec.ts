@@ -14,7 +14,7 @@ import {
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
 
-test('a VRM from a local file replaces our body, also on the next visit, until ours is chosen', async ({ page }) => {
+test('a VRM from a local file replaces our body, also on the next visit', async ({ page }) => {
   if (!avatarFile) throw new Error('public/avatars holds no .vrm: npx tsx tools/avatars/build/main.ts');
   await openWithHeadset(page, 'estimator=ik');
   const hand = await settledJoint(page, 'leftHand');
