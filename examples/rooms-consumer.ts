@@ -15,6 +15,7 @@ export async function inARoom(renderer: WebGLRenderer, scene: Scene): Promise<Jo
   };
   const room = await joinRoom('https://example.org', { name: 'Ada', body, room: 'lunch', avatar });
   scene.add(body.object, room.others.object);
+  room.standApart();
   renderer.setAnimationLoop((timeMs, frame) => {
     body.update(timeMs, frame);
     room.update(timeMs);

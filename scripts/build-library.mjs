@@ -168,6 +168,12 @@ async function writeCode() {
     sourcemapPathTransform: (source, map) => sourceInPackage(join(dirname(map), source), map),
   });
   await build.close();
+  // Parcel opens the sources of these maps, which the package has not.
+  for (const name of ['gltf-validator', 'gltf-validator-dart']) {
+    const file = join(out, 'bundled', `${name}.js`);
+    writeFileSync(file, readFileSync(file, 'utf8').replace(/^\/\/# sourceMappingURL=.*$/m, ''));
+    rmSync(`${file}.map`);
+  }
 }
 
 /** Returns the path of a source file in the package, relative to the map that names it; others keep their path. */
@@ -200,6 +206,17 @@ export async function writeDeclarations(config, types) {
     );
     writeFileSync(path, declarations);
   }
+}
+
+/** Writes the reference of these source files as reference.json, which typedoc and other programs read. */
+export async function writeReference(folder, sources) {
+  const entries = sources
+    .filter((source) => !source.endsWith('onnx-worker.ts'))
+    .flatMap((path) => ['--entryPoints', path]);
+  const output = ['--json', join(folder, 'reference.json'), '--pretty', 'false', '--skipErrorChecking'];
+  const typedoc = ['node_modules/typedoc/bin/typedoc', ...output, '--logLevel', 'Error', ...entries];
+  const { code } = await run(process.execPath, typedoc);
+  if (code !== 0) throw new SetupError(`The reference of ${folder} could not be written: exit code ${code}.`);
 }
 
 /** Copies the sources of a declaration map into the package, where editors open them, and lets the map name them. */
@@ -263,5 +280,6 @@ export const buildLibrary = () =>
     await writeCode();
     await writeBundles();
     await writeTypes();
+    await writeReference(out, Object.values(entries));
     writeFiles();
   });

@@ -4,7 +4,14 @@
 import { copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, isAbsolute, join, posix } from 'node:path';
 import { rolldown } from 'rolldown';
-import { buildLibrary, changelogOf, documentInPackage, entriesOf, writeDeclarations } from './build-library.mjs';
+import {
+  buildLibrary,
+  changelogOf,
+  documentInPackage,
+  entriesOf,
+  writeDeclarations,
+  writeReference,
+} from './build-library.mjs';
 import { mainOf, root } from './run-command.mjs';
 import { buildPackage, isPackageCurrent } from './source-hash.mjs';
 
@@ -110,6 +117,7 @@ function bundle(name, platform) {
     await declared;
     const typed = Object.values(own.publishConfig.exports).flatMap(({ types }) => types ?? []);
     copyDeclarations(name, out, typed);
+    await writeReference(out, Object.values(entriesOf(source, own)));
     copyFileSync(join(root, 'LICENSE'), join(out, 'LICENSE'));
     const documents = {
       ...{ 'README.md': `${source}/README.md`, 'CHANGELOG.md': changelogOf(source) },

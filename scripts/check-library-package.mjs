@@ -60,6 +60,7 @@ const hasCode = (file) =>
 /** Whether a file needs no map: embedded files, the bundler's own functions, and bundles of modules of the package. */
 const needsNoMap = (name) =>
   ['learned-weights.js', 'mannequin.js', 'validator.js', 'bundled/runtime.js'].includes(name) ||
+  name.startsWith('bundled/gltf-validator') ||
   name.startsWith('min/');
 
 /** Returns a message for each declaration and each file of code that lacks its map. */

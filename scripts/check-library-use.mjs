@@ -71,6 +71,43 @@ const internalUses = [
   'new Body({ profiler: null });',
 ];
 
+/** What the snippets of the READMEs leave out. */
+const surroundings = `
+import type { Camera, Scene, WebGLRenderer } from 'three';
+import type { Recording, TrackedPose } from 'threepoint';
+import type { BodyTracker } from 'threepoint/three';
+declare global {
+  const renderer: WebGLRenderer;
+  const scene: Scene;
+  const camera: Camera;
+  const session: XRSession;
+  const recording: Recording;
+  const tracker: BodyTracker;
+  const time: number;
+  const [head, leftHand, rightHand]: readonly [TrackedPose, TrackedPose, TrackedPose];
+  const channel: RTCDataChannel;
+  const peer: string;
+  const mine: Map<string, string>;
+}
+`;
+
+/** Compiles the snippets of the packages' READMEs strictly, each as a module. */
+async function compileSnippets() {
+  const files = ['surroundings.ts'];
+  writeFileSync(join(folder, files[0]), surroundings);
+  for (const name of ['threepoint', 'threepoint-rooms']) {
+    const readme = readFileSync(join(folder, 'node_modules', name, 'README.md'), 'utf8');
+    const snippets = [...readme.matchAll(/^```[jt]s\n([^]*?)^```/gm)].map(([, code]) => code);
+    for (const [number, code] of snippets.entries()) {
+      files.push(`snippet-${name}-${number}.ts`);
+      const typed = code.replace('(timeMs, frame) =>', '(timeMs: number, frame: XRFrame) =>');
+      // The argument of an animation loop has its type from three.js; a function of the page states it.
+      writeFileSync(join(folder, files.at(-1)), `${/const draw = /.test(code) ? typed : code}\nexport {};\n`);
+    }
+  }
+  await compileFiles('the snippets of the READMEs', files, ['webxr', 'three']);
+}
+
 /** Compiles uses of what is internal; the compiler reports those that it accepts. */
 async function compileInternalUses() {
   const lines = internalUses.map((use) => `// @ts-expect-error ${use}\n${use}`);
@@ -79,19 +116,22 @@ async function compileInternalUses() {
   await compileConsumer('internal-uses.ts', []);
 }
 
-async function compileConsumer(consumer, types) {
+const compileConsumer = (consumer, types) => compileFiles(consumer, [consumer], types);
+
+/** Compiles files against the installed packages, as bundlers and as Node resolve modules. `what`: for messages. */
+async function compileFiles(what, files, types) {
   for (const resolution of resolutions) {
-    const config = join(folder, `tsconfig.${consumer}.${resolution.moduleResolution}.json`);
+    const config = join(folder, `tsconfig.${files[0]}.${resolution.moduleResolution}.json`);
     const compilerOptions = {
       ...resolution,
       ...{ target: 'es2022', lib: ['es2022', 'dom', 'dom.iterable'], types, noEmit: true },
       ...{ strict: true, exactOptionalPropertyTypes: true, noUncheckedIndexedAccess: true, skipLibCheck: false },
     };
-    writeFileSync(config, JSON.stringify({ compilerOptions, files: [consumer] }));
+    writeFileSync(config, JSON.stringify({ compilerOptions, files }));
     const faults = await compile(config);
     if (faults.length > 0) {
       throw new SetupError(
-        `${consumer} with moduleResolution ${resolution.moduleResolution} does not compile:\n${faults.join('\n')}`,
+        `${what} with moduleResolution ${resolution.moduleResolution} does not compile:\n${faults.join('\n')}`,
       );
     }
   }
@@ -131,8 +171,7 @@ async function importWithoutBrowser() {
     const code = Object.entries(exports).filter(([, target]) => target.default && !target.default.includes('*'));
     return code.map(([entry]) => join(name, entry));
   });
-  // A worker's code answers messages from its first line on.
-  const imports = entries.filter((entry) => entry !== 'threepoint/onnx-worker').map((entry) => `import '${entry}';`);
+  const imports = entries.map((entry) => `import '${entry}';`);
   const program = join(folder, 'without-browser.mjs');
   writeFileSync(program, imports.join('\n'));
   await outputOf(process.execPath, [program], 'An entry cannot be imported without a browser');
@@ -146,6 +185,7 @@ await main(async () => {
       await compileConsumer(consumer, types);
     }
     await compileInternalUses();
+    await compileSnippets();
     for (const program of ['in-node.mjs', 'rooms-in-node.mjs']) await runProgram(program);
     await bundleWeights();
     await importWithoutBrowser();

@@ -79,7 +79,7 @@ export async function wrongSizes() {
   const sizes = {};
   for (const [names, entry] of Object.entries(stated))
     sizes[`\`${names}\``] = weigh(await bundle(pageWith(names, entry)));
-  sizes["the learned network's weights"] = weigh([readFileSync(join(folder, 'models/learned.bin'))]);
+  sizes["the learned network's weights"] = weigh([readFileSync(join(folder, 'learned-weights.js'))]);
   const faults = Object.entries(sizes).flatMap(([what, { min, brotli }]) => {
     const row = new RegExp(`^\\| ${what} \\| ([\\d.]+) kB \\| ([\\d.]+) kB \\|$`, 'm');
     return staleSize('src/threepoint/README.md', what, row, [min, brotli]);

@@ -30,7 +30,7 @@ export const isStamped = (stamp, hash) => existsSync(stamp) && readFileSync(stam
 /** The paths that the built packages depend on. */
 const packageSources = [
   ...['LICENSE', 'package.json', 'package-lock.json', 'docs/accuracy.md', 'public/models', 'public/avatars', 'src'],
-  ...['tsconfig.json', 'tsconfig.library.json', 'tsconfig.packages.json'],
+  ...['tsconfig.json', 'tsconfig.library.json', 'tsconfig.packages.json', 'typedoc.json'],
   ...['scripts/build-library.mjs', 'scripts/build-packages.mjs', 'scripts/library', 'scripts/licences.mjs'],
 ];
 

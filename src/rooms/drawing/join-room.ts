@@ -81,6 +81,11 @@ export interface JoinedRoom<Game extends HostedGame = People> {
    * the events of the game since the last call.
    */
   update(timeMs: number): ConnectionUpdate<Game>;
+  /**
+   * Moves `others.object` so that the people of the room stand on a circle of this radius [m], facing each other. Each
+   * page calls it, after joining; without it all users stand where their floors have their origins. A spectator stays.
+   */
+  standApart(radius?: number): void;
   /** Gives up the seat, ends the connection and removes the others. */
   leave(): void;
 }
@@ -225,6 +230,15 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
     return update;
   }
 
+  standApart(radius = 1.5): void {
+    const { seat } = this;
+    if (seat === null) return;
+    const { object } = this.others;
+    // The middle of the circle is ahead of every user, and the circle is turned under them.
+    object.position.set(0, 0, -radius);
+    object.rotation.set(0, -2 * Math.PI * placeOnCircle(seat), 0);
+  }
+
   leave(): void {
     this.#body?.removeEventListener?.('discontinuity', this.#onDiscontinuity);
     globalThis.document?.removeEventListener('visibilitychange', this.#onVisibility);
@@ -259,6 +273,13 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
   readonly #onDiscontinuity = (): void => this.client.discontinuity();
 
   readonly #onVisibility = (): void => this.client.connection?.setAway(document.hidden);
+}
+
+/** Returns a seat's place on a circle as a fraction of its length, so that few people stand far apart. */
+function placeOnCircle(seat: number): number {
+  let place = 0;
+  for (let bit = 0; bit < 4; bit++) if (seat & (1 << bit)) place += 0.5 ** (bit + 1);
+  return place;
 }
 
 /** The list of the other people, which is the same until a seat changes. */

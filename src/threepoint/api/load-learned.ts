@@ -15,7 +15,7 @@ export interface LoadLearnedOptions {
 }
 
 /**
- * Loads the learned network without onnxruntime-web: 91 kB of weights, evaluated within the frame. Rejects with an
+ * Loads the learned network without onnxruntime-web: 122 kB of code with its weights, evaluated within the frame. Rejects with an
  * Error that names the file and its fault.
  *
  * @example

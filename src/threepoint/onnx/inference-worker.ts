@@ -14,8 +14,9 @@ async function answer(question: WorkerRequest): Promise<WorkerResponse> {
   return { id, numbers: await session.run(question.features) };
 }
 
-self.addEventListener('message', ({ data: question }: MessageEvent<WorkerRequest>) => {
+// A server that renders pages imports the module, too: it has no messages.
+globalThis.addEventListener?.('message', ({ data: question }: MessageEvent<WorkerRequest>) => {
   answer(question)
     .catch((error: unknown) => ({ id: question.id, broken: reasonOf(error) }))
-    .then((answered) => self.postMessage(answered));
+    .then((answered) => globalThis.postMessage(answered));
 });
