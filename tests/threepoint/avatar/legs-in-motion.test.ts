@@ -9,7 +9,7 @@ import { eyeHeight } from './walking-person';
 
 const across = (a: Vec3, b: Vec3): number => Math.hypot(a.x - b.x, a.z - b.z);
 
-/** The way into the floor: a look aside, a hand to the other shoulder, then a quick crouch. */
+/** Acts that threw both knees to one side: a look aside, a hand to the other shoulder, a quick crouch. */
 const lookAndCrouch = (jumps: boolean) => [
   { seconds: 0.3, look: 1.4 },
   { seconds: 0.3, look: 0 },

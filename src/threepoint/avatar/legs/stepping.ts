@@ -165,7 +165,8 @@ function liftWhereDue(foot: FootState, goal: ExpectedFoot, other: Foot, { legLen
 /** Puts a foot down that is expected to stand, has made its own step or followed a goal that rests. */
 function plantWhereDue(foot: FootState, goal: ExpectedFoot): void {
   const stepped = foot.seconds > ownStep && (foot.leftBehind || foot.rest > ownStep);
-  const expected = !foot.leftBehind && (goal.standing > stands || foot.seconds > longestSwing);
+  const stood = goal.standing > stands && foot.seconds > ownStep / 2;
+  const expected = !foot.leftBehind && (stood || foot.seconds > longestSwing);
   if (!stepped && !expected) return;
   foot.planted = true;
   foot.seconds = 0;

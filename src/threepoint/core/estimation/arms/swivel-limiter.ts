@@ -201,8 +201,8 @@ export function limitSwivel(
 }
 
 /**
- * Writes the swivel angles at which the elbow is no further than `longestStep` [m] from where it was, as the head carries
- * it. Where the circle is further away, only its nearest angle is reached.
+ * Writes the swivel angles at which the elbow is no further than `longestStep` [m] from where it was, as carried by the
+ * head. Where the circle is further away, only its nearest angle is reached.
  */
 function findReachedRange(
   elbow: Vec3,
