@@ -97,7 +97,7 @@ async function compileSnippets() {
   writeFileSync(join(folder, files[0]), surroundings);
   for (const name of ['threepoint', 'threepoint-rooms']) {
     const readme = readFileSync(join(folder, 'node_modules', name, 'README.md'), 'utf8');
-    const snippets = [...readme.matchAll(/^```[jt]s\n([^]*?)^```/gm)].map(([, code]) => code);
+    const snippets = [...readme.matchAll(/^```[jt]s\n([\s\S]*?)^```/gm)].map(([, code]) => code);
     for (const [number, code] of snippets.entries()) {
       files.push(`snippet-${name}-${number}.ts`);
       const typed = code.replace('(timeMs, frame) =>', '(timeMs: number, frame: XRFrame) =>');
