@@ -6,6 +6,7 @@ import { describe, expect, test } from 'vitest';
 import { type Avatar, createAvatar } from '../../../src/threepoint/avatar/avatar';
 import { type LoadedAvatar, parseAvatar } from '../../../src/threepoint/avatar/load-avatar';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
+import { shippedGait } from '../../../src/threepoint/core/estimation/gait/shipped-gait';
 import { poseOf } from '../core/estimation/drawn';
 import { changed } from './glb';
 
@@ -188,7 +189,13 @@ describe('eyes', () => {
       readFileSync(new URL('../../../public/avatars/woman.vrm', import.meta.url)),
     );
     const { vrm } = await parseAvatar(bytes, 'painted-eyes.vrm');
-    const avatar = createAvatar({ name: 'painted-eyes.vrm', vrm, notes: [], nodeIndices: new Map() });
+    const avatar = createAvatar({
+      name: 'painted-eyes.vrm',
+      vrm,
+      notes: [],
+      gait: shippedGait,
+      nodeIndices: new Map(),
+    });
     avatar.setCalibration(defaultCalibration);
     const lookRight = () => {
       const shapes: number[] = [];
