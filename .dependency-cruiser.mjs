@@ -254,7 +254,7 @@ export default {
       from: {
         path: '^(src|server)/',
         pathNot:
-          '^src/(threepoint/(xr|avatar)|rooms/drawing|ui|page|study/participant)/|^src/threepoint/api/body-tracker\\.ts$',
+          '^src/(threepoint/(xr|avatar)|rooms/drawing|ui|page|study/participant)/|^src/threepoint/api/(body-tracker|avatar-source)\\.ts$',
       },
       to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
     },

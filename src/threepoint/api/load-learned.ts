@@ -15,8 +15,8 @@ export interface LoadLearnedOptions {
 }
 
 /**
- * Loads the learned network without onnxruntime-web: 122 kB of code with its weights, evaluated within the frame. Rejects with an
- * Error that names the file and its fault.
+ * Loads the learned network without onnxruntime-web: 122 kB with its weights, evaluated within the frame. Rejects with
+ * an Error that names the file and its fault.
  *
  * @example
  * const body = new Body({ networks: () => loadLearned({ onProgress: (fraction) => bar.set(fraction) }) });
