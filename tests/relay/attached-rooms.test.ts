@@ -4,7 +4,7 @@ import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { Group, Vector3 } from 'three';
 import { distance } from 'threepoint/math';
-import { loadAvatar } from 'threepoint/three';
+import { type Avatar, loadAvatar } from 'threepoint/three';
 import { type JoinedRoom, type JoinRoomOptions, joinRoom } from 'threepoint-rooms/three';
 import { beforeEach, expect, onTestFinished, test, vi } from 'vitest';
 import { attachRooms } from '../../src/relay/attach-rooms';
@@ -300,6 +300,30 @@ test('an offer of another protocol than the rooms’ is answered as a request wi
   const [own, rooms] = [await ask(url, '/hello', { headers }), await ask(url, '/api/rooms', { headers })];
   expect(own.body.toString()).toBe('mine: /hello');
   expect(JSON.parse(rooms.body.toString())).toEqual({ rooms: [], complete: true });
+});
+
+test('people who stand apart see each other across the circle', async () => {
+  const { url } = await servedRooms();
+  const [ann, ben] = [await joins(url, 'Ann'), await joins(url, 'Ben')];
+  ann.room.standApart();
+  ben.room.standApart();
+  const drawn = new Map<typeof ann, Avatar>();
+  const headOf = (person: typeof ann) => {
+    const head = drawn.get(person)?.jointPositions().head;
+    return head && person.room.others.object.localToWorld(new Vector3().copy(head));
+  };
+  await until('each sees the other', () => {
+    for (const person of [ann, ben]) {
+      person.frame();
+      void person.avatar.mock.results[0]?.value.then((avatar: Avatar) => drawn.set(person, avatar));
+    }
+    return headOf(ann) !== undefined && headOf(ben) !== undefined;
+  });
+  for (const person of [ann, ben]) {
+    const { x, z } = headOf(person)!;
+    // The actor moves about its origin by less than half a metre.
+    expect(Math.hypot(x, z + 3)).toBeLessThan(0.5);
+  }
 });
 
 test('a room that cannot be joined is refused with a sentence', async () => {

@@ -1,4 +1,4 @@
-import type { Object3D } from 'three';
+import { Object3D } from 'three';
 import {
   type AvatarRef,
   type Calibration,
@@ -180,6 +180,8 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
   readonly #placed = new PlacedPose();
   #calibration: Calibration | null;
   #warnedOfDistance = false;
+  /** The floor of a body without an avatar, at the origin of the scene; null: at that of `others.object`. */
+  #floor: Object3D | null = null;
 
   constructor(
     connection: Connection<Game>,
@@ -234,6 +236,7 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
     const { seat } = this;
     if (seat === null) return;
     const { object } = this.others;
+    this.#floor = new Object3D();
     // The middle of the circle is ahead of every user, and the circle is turned under them.
     object.position.set(0, 0, -radius);
     object.rotation.set(0, -2 * Math.PI * placeOnCircle(seat), 0);
@@ -254,8 +257,8 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
       this.client.connection?.calibrate(body.calibration);
     }
     if (!body.pose) return;
-    const { avatar } = body;
-    const othersFromFloor = avatar && relativeTransform(avatar.object, this.others.object);
+    const floor = body.avatar?.object ?? this.#floor;
+    const othersFromFloor = floor && relativeTransform(floor, this.others.object);
     const pose = othersFromFloor ? this.#placed.place(othersFromFloor, body.pose) : body.pose;
     this.#warnOfDistance(Math.max(Math.abs(pose.head.position.x), Math.abs(pose.head.position.z)));
     this.client.sendPose(time, pose, body.pose.fingers ?? unknownFingers);
