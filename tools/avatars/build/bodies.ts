@@ -31,7 +31,7 @@ interface Colours {
  * Triangles before seams are cut: a beard or a large head needs some of them for its shapes, so that the file stays as
  * small.
  */
-const usualTriangles = 2_600;
+const usualTriangles = 3_500;
 
 function person(
   name: string,
@@ -131,12 +131,12 @@ const man = person(
     hair: 'short',
     wears: {
       top: { off: 0.011, flare: 0.012, full: 0.002, sleeve: 0.355, hem: 0.95, neck: 0.012, ribbed: false },
-      bottom: { off: 0.007, cuffOff: 0.018, cuff: 0.1 },
-      shoes: 0.085,
+      bottom: { off: 0.007, cuffOff: 0.018, cuff: 0.118 },
+      shoes: 0.08,
     },
   },
   { skin: '#7a4e35', hair: '#1f1714', top: '#e6dfd0', trim: '#c8552f', bottom: '#33517a', shoes: '#39404a' },
-  3_600,
+  3_300,
 );
 
 const stout = person(
@@ -151,7 +151,7 @@ const stout = person(
     seat: 1.15,
     neck: 1.14,
     trapezius: 1.02,
-    limbs: { shoulder: 0.88, upperArm: 1.22, forearm: 1.16, thigh: 1.15, calf: 1.12 },
+    limbs: { shoulder: 0.86, upperArm: 1.22, forearm: 1.16, thigh: 1.15, calf: 1.12 },
     feet: 1.1,
     head: {
       size: 1.27,
@@ -167,13 +167,13 @@ const stout = person(
     },
     hair: 'curls',
     wears: {
-      top: { off: 0.0125, flare: 0.008, full: 0.008, sleeve: 0.665, hem: 0.95, neck: 0.01, ribbed: true },
-      bottom: { off: 0.006, cuffOff: 0.018, cuff: 0.1 },
-      shoes: 0.085,
+      top: { off: 0.0125, flare: 0.008, full: 0.005, sleeve: 0.665, hem: 0.95, neck: 0.01, ribbed: true },
+      bottom: { off: 0.006, cuffOff: 0.018, cuff: 0.118 },
+      shoes: 0.08,
     },
   },
   { skin: '#e0ac86', hair: '#8a4a24', top: '#c2573c', trim: '#6d2f2b', bottom: '#4a4f58', shoes: '#7b5a3e' },
-  2_800,
+  2_300,
 );
 
 const child = person(
@@ -213,12 +213,12 @@ const child = person(
         neck: 0.01,
         ribbed: false,
       },
-      bottom: { off: 0.006, cuffOff: 0.026, cuff: 0.46 },
+      bottom: { off: 0.006, cuffOff: 0.026, cuff: 0.425 },
       shoes: 0.09,
     },
   },
   { skin: '#d39a72', hair: '#5d3820', top: '#f0bd3f', trim: '#f6f1e4', bottom: '#3f6aa6', shoes: '#d9503f' },
-  3_200,
+  2_900,
 );
 
 /** Every body that is ours, by the name of its file. */

@@ -1,5 +1,5 @@
 import type { FaceShape, Figure, Label, Seam } from './figure';
-import { lightOn, rounded, withPieces } from './pieces';
+import { lightOn, rounded, type Sunk, sunk, withPieces } from './pieces';
 import { hipLine } from './rig';
 import { type Point, smoothstep } from './signed-distance';
 import {
@@ -8,12 +8,13 @@ import {
   decimate,
   largestPart,
   mesh,
+  middleOf,
   normalsOf,
   projectOnto,
   refine,
   type Surface,
 } from './surface';
-import { skinWeights } from './weights';
+import { copiedWeights, skinWeights } from './weights';
 import { writeVrm } from './write-vrm';
 
 /** Finer than a finger's fillet [m]. */
@@ -93,11 +94,6 @@ function finenessOf({ rig, finer }: Figure): (x: number, y: number, z: number) =
   };
 }
 
-const middleOf = ({ positions, indices }: Surface, t: number): Point =>
-  [0, 1, 2].map(
-    (axis) => [0, 1, 2].reduce((sum, corner) => sum + positions[3 * indices[t + corner]! + axis]!, 0) / 3,
-  ) as unknown as Point;
-
 /**
  * A corner of a triangle inside a seam lies at most so far out of it: vertices are put onto the seams that are cut
  * later [m].
@@ -108,15 +104,20 @@ const outsideAtMost = 8e-4;
  * Whether a triangle, once cut, is inside a seam. One that reaches over a line's end with its middle inside is not: it
  * would stand out as a tick.
  */
-const isInside = ({ value }: Seam, { positions, indices }: Surface, t: number, middle: Point): boolean =>
+const isInside = ({ value, near = 0 }: Seam, { positions, indices }: Surface, t: number, middle: Point): boolean =>
   value(...middle) < 0 &&
   [0, 1, 2].every((corner) => {
     const v = 3 * indices[t + corner]!;
-    return value(positions[v]!, positions[v + 1]!, positions[v + 2]!) < outsideAtMost;
+    return value(positions[v]!, positions[v + 1]!, positions[v + 2]!) < Math.max(outsideAtMost, near);
   });
 
 /** How far each vertex goes for each shape of the face [m]: none of the body's, and none that a label holds. */
-function movesOf({ shapes, holds }: Figure, { positions, indices }: Surface, kinds: Label[], ofHead: boolean[]) {
+function movesOf(
+  { shapes, holds }: Figure,
+  { positions, indices }: Surface,
+  kinds: readonly Label[],
+  ofHead: readonly boolean[],
+) {
   return Object.entries(shapes).map(([shape, displaced]) => {
     const name = shape as FaceShape;
     const held = new Set<number>();
@@ -143,7 +144,7 @@ const labelsOf = (surface: Surface, seams: readonly Seam[], rest: Label): Label[
 
 /** A body as a VRM 1.0 file; the same bytes every time. `coarser`: cells so many times larger, for a quick look. */
 export async function buildBody(figure: Figure, report?: (what: string) => void, coarser = 1): Promise<Uint8Array> {
-  const { body, seams, rest, box, shadedOver } = figure;
+  const { body, seams, rest, box, shadedOver, sinks = [], worn = body } = figure;
   const fine = projectOnto(body, largestPart(mesh(body, ...box, coarser * cell)), 2);
   report?.(`${fine.indices.length / 3} triangles of ${coarser * cell * 1000} mm`);
   const weighed = importance(fine, figure);
@@ -160,21 +161,28 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
   const settled = new Set<number>();
   // What lies over others comes last: a thin line through a surface that is cut along its middle already keeps both
   // edges.
-  for (const { value } of seams.toReversed()) surface = cutAlong(surface, value, settled);
+  for (const { value, line = value, near } of seams.toReversed()) {
+    surface = cutAlong(surface, line, settled, near ? { near, onto: body } : undefined);
+  }
   surface = compact(surface);
-  const kinds = labelsOf(surface, seams, rest);
-  const ofHead = kinds.map((label, triangle) => figure.ofHead(label, middleOf(surface, 3 * triangle)));
-  const normals = normalsOf(body, surface.positions, shadedOver);
-  const skinned = {
+  const whole = sinks.reduce<Sunk>((before, sink) => sunk(before, sink, shadedOver), {
     surface,
-    normals,
-    skin: skinWeights(surface, figure),
-    labels: kinds,
-    ofHead,
-    light: figure.tint ? lightOn(body, surface, normals) : null,
-    shapes: movesOf(figure, surface, kinds, ofHead),
-  };
-  const whole = withPieces(figure, skinned, (piece) => labelsOf(piece.surface, piece.seams, piece.rest));
-  report?.(`${whole.surface.indices.length / 3} triangles`);
-  return writeVrm(figure, figure.rounded ? rounded(whole) : whole);
+    normals: normalsOf(body, surface.positions, shadedOver),
+    labels: labelsOf(surface, seams, rest),
+    origins: Array.from({ length: surface.positions.length / 3 }, (_, v) => v),
+  });
+  const ofHead = whole.labels.map((label, triangle) => figure.ofHead(label, middleOf(whole.surface, 3 * triangle)));
+  const skinned = withPieces(
+    figure,
+    {
+      ...whole,
+      skin: copiedWeights(skinWeights(surface, figure), whole.origins),
+      ofHead,
+      light: figure.tint ? lightOn(worn, whole.surface, whole.normals) : null,
+      shapes: movesOf(figure, whole.surface, whole.labels, ofHead),
+    },
+    (piece) => labelsOf(piece.surface, piece.seams, piece.rest),
+  );
+  report?.(`${skinned.surface.indices.length / 3} triangles`);
+  return writeVrm(figure, figure.rounded ? rounded(skinned) : skinned);
 }

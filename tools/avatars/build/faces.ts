@@ -137,8 +137,10 @@ export function browSeams(face: FaceMeasures): readonly Seam[] {
 
 /** The floor of an eye's socket, behind the ball, to which the skin inside its opening goes. */
 export const sinkOf = (face: FaceMeasures): Sink => ({
-  label: 'Socket',
-  wall: (_, y) => (y > eyeHeight + 0.1 * face.eye.radii[1] * face.size ? 'Lash' : 'Skin'),
+  isInside: (label) => label === 'Socket',
+  isAbove: () => true,
+  turned: () => [],
+  strips: (_, y) => [y > eyeHeight + 0.1 * face.eye.radii[1] * face.size ? 'Lash' : 'Skin'],
   to(worldX, worldY, worldZ) {
     const at = onAverageHead(face, worldX, worldY, worldZ);
     const ahead = at.map((value, axis) => value - ballCentre[axis]!);
@@ -234,7 +236,7 @@ export function faceFineness(face: FaceMeasures, worldX: number, worldY: number,
   if (radius < 0.75) return 0.012;
   if (radius < 2.1) return (radius < 1.35 ? 0.0046 : 0.009) * face.size;
   const atBrow = Math.abs(y - eyeHeight - face.brow.above) < 0.008 && Math.abs(x - eyeOut) < 0.025;
-  return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.0052 : 0.012) * face.size);
+  return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.0052 : 0.0125) * face.size);
 }
 
 /** How far the upper lid lies over the lower one when both are closed [m]. */

@@ -1,5 +1,5 @@
 import type { Anatomy } from './anatomy';
-import type { Point } from './signed-distance';
+import type { DistanceField, Point } from './signed-distance';
 import type { Surface } from './surface';
 
 /** A material that the page recolours by its name; `Details` keeps the colours of its vertices. */
@@ -55,6 +55,10 @@ export const tintOf = (label: Label): Tint => {
 export interface Seam {
   readonly label: Label;
   readonly value: (x: number, y: number, z: number) => number;
+  /** What is zero along the line to be cut; absent: the value. Lines that meet another one run on past it. */
+  readonly line?: (x: number, y: number, z: number) => number;
+  /** The distance within which vertices are put onto the line [m]; absent: less than is seen. */
+  readonly near?: number;
 }
 
 export interface MaterialLook {
@@ -84,11 +88,19 @@ export interface Piece {
   readonly bone: string;
 }
 
-/** An opening in the skin: triangles with a label go inward, and a wall joins them to the edge. */
+/** Where the surface goes inward beneath an edge, as at eyes and under cloth, and the wall that joins it to the edge. */
 export interface Sink {
-  readonly label: Label;
-  readonly wall: (x: number, y: number, z: number) => Label;
+  /** Whether a triangle with this label and middle goes inward, and whether one beside it ends in an edge. */
+  readonly isInside: (label: Label, middle: Point) => boolean;
+  readonly isAbove: (label: Label) => boolean;
+  /** Returns the place inside of a vertex. */
   readonly to: (x: number, y: number, z: number) => Point;
+  /** The surface inside, for its normals; absent: those of the surface before. */
+  readonly onto?: DistanceField;
+  /** Returns the places between an edge's vertex and the one inside, in turn on the way inward, and the normals there. */
+  readonly turned: (x: number, y: number, z: number) => readonly { readonly place: Point; readonly normal: Point }[];
+  /** The labels of the wall's strips at a place of the edge, in the same order; the last meets what is inside. */
+  readonly strips: (x: number, y: number, z: number) => readonly Label[];
 }
 
 /** Returns the place of a skin point under a shape; null: unchanged. */
@@ -126,7 +138,10 @@ export interface Figure extends Anatomy {
    */
   readonly rounded?: boolean;
   readonly pieces?: readonly Piece[];
-  readonly sink?: Sink;
+  /** From the outermost on; absent: none. */
+  readonly sinks?: readonly Sink[];
+  /** The body with the edges of its clothes, which take light; absent: `body`. */
+  readonly worn?: DistanceField;
   /** What a label's colour is multiplied by at a place, besides occlusion. Absent: neither. */
   readonly tint?: (label: Label, x: number, y: number, z: number) => Tint;
 }

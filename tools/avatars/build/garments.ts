@@ -1,6 +1,6 @@
 import type { Label, Seam } from './figure';
 import type { BodyRig } from './rig';
-import { type DistanceField, smoothBoth, smoothstep, smoothUnion } from './signed-distance';
+import { type DistanceField, smoothstep } from './signed-distance';
 
 /** What a person wears. All [m]. */
 export interface GarmentStyle {
@@ -23,12 +23,19 @@ export interface GarmentStyle {
   readonly shoes: number;
 }
 
+/** Where cloth ends: how far a place is past the nearest edge, negative before it [m], and what its rim and inside are. */
+export interface GarmentEdge {
+  readonly past: DistanceField;
+  readonly rim: Label;
+  readonly inside: Label;
+}
+
 export interface Garment {
   readonly label: Label;
-  /** x ≥ 0. */
+  /** Cloth runs on past its edges and fades onto the skin, x ≥ 0. */
   readonly field: DistanceField;
-  /** A field that is 0 on its edges, negative inside. */
-  readonly edge?: DistanceField;
+  /** Absent: it ends by itself. */
+  readonly edge?: GarmentEdge;
   /** What is marked on it. */
   readonly marks?: readonly Seam[];
 }
@@ -37,9 +44,9 @@ export type Garments = readonly Garment[];
 
 interface Undressed {
   readonly rig: BodyRig;
-  readonly torso: DistanceField;
-  readonly leg: DistanceField;
-  readonly arm: DistanceField;
+  /** The skin that a top lies on, the skin that trousers lie on, and a foot with its leg. */
+  readonly upper: DistanceField;
+  readonly lower: DistanceField;
   readonly foot: DistanceField;
 }
 
@@ -50,12 +57,8 @@ interface Undressed {
 const neckline = ({ top }: GarmentStyle, x: number, y: number, z: number): number =>
   y - 1.444 - 0.4 * Math.max(0, x - 0.06) + 0.12 * z + top.neck * smoothstep(0, 0.07, z);
 
-/** An edge as of cloth, the thickness of cloth, and the width of a trimmed edge [m]. */
-const edge = 0.003;
-const thickness = 0.0055;
+/** The width of a trimmed edge [m]. */
 export const trimWidth = 0.019;
-/** How steeply an opening goes in beneath its cloth. */
-const recess = 1;
 /** The upper end of trousers: below every hem [m]. */
 const waist = 1.04;
 
@@ -67,15 +70,15 @@ const soleHeight = 0.028;
 const toeCap = 0.142;
 const toeSpring = (z: number): number => 2.2 * Math.max(0, z - 0.115) ** 2;
 
-/** A shell of cloth about a body, within a region (negative inside): beneath its edge the opening goes in. */
-const shell = (body: number, off: number, region: number): number =>
-  smoothBoth(body - off, region + recess * Math.max(0, off - thickness - body), edge);
+/** How far past its edge cloth has faded onto what lies under it [m]. */
+export const fading = 0.014;
 
-export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: Undressed): Garments {
+/** Cloth that lies so far off a body, and fades onto it past its edge. */
+const shell = (body: number, off: number, edge: number): number => body - off * smoothstep(fading, 0, edge);
+
+export function garmentsOf(style: GarmentStyle, { rig, upper, lower, foot }: Undressed): Garments {
   const { top, bottom, shoes } = style;
   const { wrist } = rig.armJoints;
-  const dressed = (x: number, y: number, z: number) =>
-    smoothUnion(smoothUnion(torso(x, y, z), leg(x, y, z), 0.06), arm(x, y, z), 0.07);
   const long = top.sleeve > wrist - 0.1;
   const topEdge: DistanceField = (x, y, z) => Math.max(x - top.sleeve, top.hem - y, neckline(style, x, y, z));
   const topOff: DistanceField = (x, y, z) => {
@@ -93,18 +96,15 @@ export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: 
     bottom.off +
     (bottom.cuffOff - bottom.off) * smoothstep(0.75, 0.25, y) +
     0.004 * smoothstep(bottom.cuff + trimWidth + 0.003, bottom.cuff + trimWidth, y);
-  const legs: DistanceField = (x, y, z) => smoothUnion(torso(x, y, z), leg(x, y, z), 0.06);
   const bottomEdge: DistanceField = (_, y) => bottom.cuff - y;
+  /** The collar of a shoe is high at the heel and at the tongue, and low at the ankle. */
+  const shoeEdge: DistanceField = (_, y, z) =>
+    y - shoes - 0.3 * Math.max(0, -z - 0.035) - 0.013 * smoothstep(-0.02, 0.03, z);
   /** Toes have room. */
   const shod: DistanceField = (x, y, z) => foot(x, y, z) - 0.008 * smoothstep(0.03, 0.12, z);
   const shoe: DistanceField = (x, y, z) => {
     if (y > 0.3) return y - 0.1;
-    return smoothBoth(
-      smoothUnion(shod(x, y, z), leg(x, y, z), 0.03) - 0.011,
-      // The collar is high at the heel and at the tongue, and low at the ankle.
-      y - shoes - 0.3 * Math.max(0, -z - 0.035) - 0.3 * smoothstep(-0.02, 0.03, z) * Math.max(0, 0.07 - z),
-      edge,
-    );
+    return shell(shod(x, y, z), 0.011, shoeEdge(x, y, z));
   };
   /** A sole is thicker at the heel and wider below, and its tip is off the floor. */
   const sole: DistanceField = (x, y, z) => {
@@ -116,37 +116,25 @@ export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: 
   return [
     {
       label: 'Top',
-      field: (x, y, z) =>
-        y < top.hem - 0.15 ? top.hem - y : shell(dressed(x, y, z), topOff(x, y, z), topEdge(x, y, z)),
-      edge: topEdge,
-      marks: [
-        // Not at the hem, which lies on trousers.
-        {
-          label: 'TopInside',
-          value: (x, y, z) => Math.max(dressed(x, y, z) - topOff(x, y, z) + thickness, top.hem + 0.1 - y),
-        },
-        { label: 'TopTrim', value: (x, y, z) => -topEdge(x, y, z) - trimWidth },
-      ],
+      field: (x, y, z) => (y < top.hem - 0.15 ? top.hem - y : shell(upper(x, y, z), topOff(x, y, z), topEdge(x, y, z))),
+      edge: { past: topEdge, rim: 'TopTrim', inside: 'TopInside' },
+      marks: [{ label: 'TopTrim', value: (x, y, z) => -topEdge(x, y, z) - trimWidth }],
     },
     {
       label: 'Bottom',
-      field(x, y, z) {
-        if (y > waist + 0.15) return y - waist;
-        return Math.max(y - waist, shell(legs(x, y, z), bottomOff(x, y, z), bottomEdge(x, y, z)));
-      },
-      marks: [
-        {
-          label: 'BottomInside',
-          value: (x, y, z) => Math.max(legs(x, y, z) - bottomOff(x, y, z) + thickness, y - 0.6),
-        },
-        { label: 'BottomTrim', value: (x, y, z) => -bottomEdge(x, y, z) - trimWidth },
-      ],
+      field: (x, y, z) =>
+        y > waist + 0.15
+          ? y - waist
+          : Math.max(y - waist, shell(lower(x, y, z), bottomOff(x, y, z), bottomEdge(x, y, z))),
+      edge: { past: bottomEdge, rim: 'BottomTrim', inside: 'BottomInside' },
+      marks: [{ label: 'BottomTrim', value: (x, y, z) => -bottomEdge(x, y, z) - trimWidth }],
     },
+    { label: 'Sole', field: sole },
     {
       label: 'Shoes',
       field: shoe,
+      edge: { past: shoeEdge, rim: 'Shoes', inside: 'Shoes' },
       marks: [{ label: 'Sole', value: (_, y, z) => toeCap - z + 0.7 * (y - soleHeight) }],
     },
-    { label: 'Sole', field: sole },
   ];
 }

@@ -61,25 +61,11 @@ const styles: Readonly<Record<HairStyle, (x: number, y: number, z: number, head:
     return smoothBoth(head - grown(line, y, 0.006, 0.0135) - 0.006 * smoothstep(1.65, 1.7, y) - tufts, line - y, 0.006);
   },
   curls(x, y, z, head) {
-    const curls = 0.0058 * Math.sin(110 * x + 0.6) * Math.sin(105 * y) * Math.sin(110 * z);
-    const line = hairline(1.66 - 1.5 * x * x, 1.604, 1.535, z);
-    const top = smoothBoth(
-      head - grown(line, y, 0.004, 0.016) - 0.008 * smoothstep(1.64, 1.7, y) - 1.5 * curls,
-      line - y,
-      0.005,
-    );
-    // A beard from ear to ear: below the cheekbones, round the mouth.
-    const aside = Math.abs(x);
-    const upper = 1.531 + 0.0009 / Math.max(0.012, 0.09 - aside) + 0.06 * smoothstep(0.035, -0.005, z);
-    const mouth = 0.0125 - Math.hypot(0.5 * aside, 1.25 * (y - 1.5375));
-    const edge = Math.max(y - upper, mouth, -0.012 - z, 1.482 - y);
-    const beard = smoothBoth(head - 0.0075 - 0.5 * curls, edge, 0.006);
-    const moustache = smoothBoth(
-      head - 0.0055,
-      Math.max(Math.abs(y - 1.553 + 0.3 * aside) - 0.0052, aside - 0.027, 0.04 - z),
-      0.005,
-    );
-    return smoothUnion(Math.min(top, moustache), beard, 0.004);
+    const { ridge, chance } = clumpAt({ count: 12, twist: 1.9, whorl: [0.1, -0.2] }, x, y, z);
+    const line = hairline(1.66 - 1.5 * x * x, 1.604, 1.535, z) - 0.01 * ridge * (0.3 + chance);
+    const tufts = 0.013 * (ridge - 0.45 + 0.4 * chance) * smoothstep(1.58, 1.66, y);
+    const top = smoothBoth(head - grown(line, y, 0.004, 0.014) - tufts, line - y, 0.005);
+    return smoothUnion(Math.min(top, moustache(x, y, z, head)), beard(x, y, z, head), 0.003);
   },
   bob(x, y, z, head) {
     const { ridge, chance } = clumpAt({ count: 15, twist: 0.35, whorl: [-0.28, 0.05] }, x, y, z);
@@ -91,7 +77,7 @@ const styles: Readonly<Record<HairStyle, (x: number, y: number, z: number, head:
       0.0095 * (ridge - 0.6) * (0.5 + 0.5 * chance);
     // Open before the face, ends in points above the shoulders and over the forehead.
     const open = smoothBoth(mass, -bobOpening.distance(Math.abs(x), y + 0.009 * ridge, z), 0.008);
-    const cut = smoothBoth(open, 1.497 + 0.25 * Math.max(0, z) - 0.012 * ridge * (0.3 + chance) - y, 0.008);
+    const cut = smoothBoth(open, 1.516 + 0.25 * Math.max(0, z) - 0.012 * ridge * (0.3 + chance) - y, 0.008);
     // A fringe, swept aside from the parting.
     const part = 0.012 + 0.34 * (x + 0.022);
     const line =
@@ -101,6 +87,39 @@ const styles: Readonly<Record<HairStyle, (x: number, y: number, z: number, head:
     return smoothUnion(smoothUnion(cut, cap, 0.01), fringe, 0.008 * (1 - lower) + 0.002);
   },
 };
+
+/** A beard from ear to ear, below the cheekbones and round the mouth, in clumps that end in points below the chin. */
+function beard(x: number, y: number, z: number, head: number): number {
+  const aside = Math.abs(x);
+  const { ridge, chance } = beardClump(x, z);
+  const cheek = 1.529 + 0.0009 / Math.max(0.012, 0.09 - aside) + 0.06 * smoothstep(0.035, -0.005, z);
+  const mouth = Math.hypot(0.55 * aside, 1.25 * (y - 1.5375)) - 0.0125;
+  const inside = Math.min(cheek - y, mouth, z + 0.014 + 0.004 * ridge);
+  const long = smoothstep(1.535, 1.5, y) * smoothstep(0.015, 0.06, z);
+  const bevel = smoothstep(0.002, 0.02, inside);
+  const thick = 0.0085 * smoothstep(-0.004, 0.016, inside) - 0.0015 + bevel * (0.009 * long + 0.006 * (ridge - 0.55));
+  // Further out than its edge there is none.
+  const grown = Math.max(head - thick, -inside - 0.004);
+  return smoothBoth(grown, 1.501 - 0.007 * (ridge - 0.5) * (0.5 + chance) - 0.01 * long - y, 0.006);
+}
+
+/** Clumps of a beard hang side by side, one in the middle. */
+function beardClump(x: number, z: number): Clump {
+  const at = 17 * (Math.atan2(x, z + 0.02) / (2 * Math.PI)) + 0.5;
+  const across = Math.abs(2 * (at - Math.floor(at)) - 1);
+  const random = Math.sin(12.9898 * Math.floor(at)) * 43758.5453;
+  return { ridge: 1 - across ** 2.4, chance: random - Math.floor(random) };
+}
+
+/** Two clumps that part below the nose and point down past the corners of the mouth. */
+function moustache(x: number, y: number, z: number, head: number): number {
+  const aside = Math.abs(x);
+  const along = Math.max(0, Math.min(1, aside / 0.03));
+  const middle = 1.5535 - 0.1 * aside - 5 * aside * aside;
+  const away = Math.hypot(y - middle, 0.7 * Math.max(0, aside - 0.03)) / (0.0075 - 0.003 * along);
+  const parting = 0.35 * smoothstep(0.005, 0, aside);
+  return z < 0.03 ? 0.05 : head - 0.0095 * (1 - away * away - parting);
+}
 
 const bobCrown = ellipsoid([0, 1.63, -0.018], [0.098, 0.09, 0.108]);
 const bobCurtain = taperedCapsule([0.056, 1.6, -0.03], [0.056, 1.51, -0.026], 0.05, 0.05);

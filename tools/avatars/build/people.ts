@@ -4,7 +4,6 @@ import {
   averageEars,
   averageFoot,
   averageNeck,
-  fieldOf,
   fingersOf,
   foldedX,
   type Girths,
@@ -34,11 +33,19 @@ import {
   skullOf,
   warmed,
 } from './faces';
-import type { Displacement, FaceShape, Figure, Label, Seam, Tint } from './figure';
-import { type Garment, type GarmentStyle, type Garments, garmentsOf, trimWidth } from './garments';
+import type { Displacement, FaceShape, Figure, Label, Seam, Sink, Tint } from './figure';
+import {
+  fading,
+  type Garment,
+  type GarmentEdge,
+  type GarmentStyle,
+  type Garments,
+  garmentsOf,
+  trimWidth,
+} from './garments';
 import { type HairStyle, hairOf } from './hair';
-import { type BodyRig, makeRig, type RigMeasures } from './rig';
-import { type DistanceField, ellipsoid, type Point, smoothstep, smoothUnion } from './signed-distance';
+import { type BodyRig, makeRig, type RigMeasures, unit } from './rig';
+import { type DistanceField, ellipsoid, gradient, type Point, smoothstep, smoothUnion } from './signed-distance';
 import { projectOnto } from './surface';
 
 /** Half width and half depth [m]. */
@@ -130,30 +137,95 @@ const besideHair =
   };
 
 /** Hair or a garment on both sides. */
-type Cover = Pick<Garment, 'label' | 'field' | 'marks'>;
+type Cover = Pick<Garment, 'label' | 'field' | 'edge' | 'marks'>;
 
 const folded =
   (field: DistanceField): DistanceField =>
   (x, y, z) =>
     field(foldedX(x), y, z);
 
-/** Returns the seams of covers, and before them those of what is marked on them; `skin`: x ≥ 0. */
-function coverSeams(skin: DistanceField, covers: readonly Cover[]): readonly Seam[] {
-  const seams = covers.map(({ label, field, marks = [] }) => {
-    const own: DistanceField = (x, y, z) => {
-      let others = skin(foldedX(x), y, z);
-      for (const other of covers) if (other.field !== field) others = Math.min(others, other.field(x, y, z));
-      return field(x, y, z) - others;
-    };
-    const marked = marks.map(
-      (mark): Seam => ({
-        label: mark.label,
-        value: (x, y, z) => Math.max(own(x, y, z), mark.value(foldedX(x), y, z)),
-      }),
+/** The field of a cover that ends at its edges. */
+const ending =
+  ({ field, edge }: Cover): DistanceField =>
+  (x, y, z) =>
+    Math.max(field(x, y, z), edge?.past(x, y, z) ?? Number.NEGATIVE_INFINITY);
+
+/** Vertices so near to the lines of clothes are put onto them [m]: cloth is smooth, and needs few triangles. */
+const nearEdge = 0.0035;
+
+/** All of them, cut flat at the floor; small creases between them are filled. */
+const unionOf =
+  (fields: readonly DistanceField[]): DistanceField =>
+  (x, y, z) =>
+    onFloor(
+      fields.reduce((distance, field) => smoothUnion(distance, field(x, y, z), 0.003), 1),
+      y,
     );
-    return { marked, cover: { label, value: own } };
+
+/** Returns the seams of covers, from the outermost on, each after those of what is marked on it. */
+function coverSeams(skin: DistanceField, covers: readonly Cover[]): readonly Seam[] {
+  return covers.flatMap(({ label, field, edge, marks = [] }, i) => {
+    const others = [skin, ...covers.slice(i + 1).map(ending)];
+    const own: DistanceField = (x, y, z) =>
+      Math.max(
+        field(x, y, z) - Math.min(...others.map((other) => other(x, y, z))),
+        edge?.past(x, y, z) ?? Number.NEGATIVE_INFINITY,
+      );
+    const marked = marks.map((mark): Seam => {
+      const line = folded(mark.value);
+      return {
+        label: mark.label,
+        line,
+        near: 0.5 * nearEdge,
+        value: (x, y, z) => Math.max(own(x, y, z), line(x, y, z)),
+      };
+    });
+    return [...marked, { label, value: own, ...(edge && { near: nearEdge }) }];
   });
-  return [...seams.flatMap(({ marked }) => marked), ...seams.map(({ cover }) => cover)];
+}
+
+/** The thickness of cloth, and how deep one looks beneath its edge [m]. */
+const turn = { thickness: 0.005, depth: [0.005, 0.012] } as const;
+
+/** Skin, or a layer of clothes that others lie on. */
+interface Layer {
+  /** As it is when the edges of clothes over it turn, and with its own edges. */
+  readonly field: DistanceField;
+  readonly ends: DistanceField;
+  readonly label: Label;
+}
+
+/** The turned edge of a garment: cloth of some thickness, whose inside goes down to the layers under it. */
+function hemOf({ label, field }: Cover, { past: edge, rim, inside }: GarmentEdge, layers: readonly Layer[]): Sink {
+  const under = unionOf(layers.map((layer) => layer.field));
+  const onLayers = onSurface(under);
+  const isAbove = (other: Label): boolean => other === label || other === rim;
+  const moved = ([x, y, z]: Point, [dx, dy, dz]: Point, by: number): Point => [x + by * dx, y + by * dy, z + by * dz];
+  return {
+    isInside: (other, middle) => !isAbove(other) && edge(...middle) > -nearEdge,
+    isAbove,
+    to: (...place) => (edge(...place) < fading ? onLayers(place) : place),
+    onto: under,
+    turned(...place) {
+      const [outward, off] = [gradient(edge, ...place), gradient(field, ...place)];
+      // The direction past the edge along the cloth.
+      const leaning = off.reduce((sum, value, axis) => sum + value * outward[axis]!, 0);
+      const normal = unit(...moved(outward, off, -leaning));
+      const gap = Math.max(0, under(...place));
+      const thick = Math.min(turn.thickness, 0.6 * gap);
+      const [least, most] = turn.depth;
+      const depth = Math.max(least, Math.min(most, 0.6 * gap));
+      return [
+        { place: moved(place, off, -thick), normal },
+        { place: onLayers(moved(moved(place, normal, -depth), off, -gap)), normal },
+      ];
+    },
+    strips(...place) {
+      const inner = onLayers(place);
+      const [nearest] = layers.toSorted((a, b) => a.ends(...inner) - b.ends(...inner));
+      return [rim, inside, nearest!.label];
+    },
+  };
 }
 
 /** Warm knuckles and fingertips. */
@@ -173,7 +245,10 @@ function handTint({ fingers, fingerPoint }: BodyRig, x: number, y: number, z: nu
 export function personOf(
   measures: PersonMeasures,
   colors: Readonly<Partial<Record<Label, Tint>>>,
-): Pick<Figure, keyof Anatomy | 'seams' | 'finer' | 'shapes' | 'ofHead' | 'holds' | 'pieces' | 'sink' | 'tint'> {
+): Pick<
+  Figure,
+  keyof Anatomy | 'seams' | 'finer' | 'shapes' | 'ofHead' | 'holds' | 'pieces' | 'sinks' | 'worn' | 'tint'
+> {
   const { head: face, neck: n, feet } = measures;
   const rig = makeRig({ ...measures.rig, eye: eyeCentre(face) });
   const torso = torsoOf(measures);
@@ -183,26 +258,31 @@ export function personOf(
   const arm = armOf(rig, measures.limbs);
   const hand = [palmOf(rig, measures.rig.hand ?? 1), ...fingersOf(rig)];
   const heads = [skullOf(face), featuresOf(face), lids, ears].map((region) => inHead(region, face));
-  const skin = joined([torso, neck, ...heads, leg, foot, arm, ...hand]);
+  const skin = folded(joined([torso, neck, ...heads, leg, foot, arm, ...hand]));
   const hair = hairOf(measures.hair, face, joined(heads.slice(0, -1)));
   const garments: Garments = garmentsOf(measures.wears, {
     rig,
-    torso: fieldOf(torso),
-    leg: fieldOf(leg),
-    arm: fieldOf(arm),
-    foot: fieldOf(foot),
+    // Cloth hangs across an armpit.
+    upper: joined([torso, neck, leg, { ...arm, joint: 0.07 }, hand[0]!]),
+    lower: joined([torso, leg, foot]),
+    foot: joined([leg, foot]),
   });
   const covers: readonly Cover[] = [
     { label: 'Hair', field: hair },
-    ...garments.map((garment) => ({ ...garment, field: folded(garment.field) })),
+    ...garments.map(({ field, edge, ...garment }) => ({
+      ...garment,
+      field: folded(field),
+      ...(edge && { edge: { ...edge, past: folded(edge.past) } }),
+    })),
   ];
-  const body = (worldX: number, y: number, z: number): number => {
-    const x = foldedX(worldX);
-    let distance = skin(x, y, z);
-    for (const { field } of covers) distance = smoothUnion(distance, field(worldX, y, z), 0.003);
-    return onFloor(distance, y);
-  };
-  const isFull = measures.wears.top.full > 0.005;
+  const body = unionOf([skin, ...covers.map(({ field }) => field)]);
+  // Each lies on those after it, whose edges turn later.
+  const hems = covers.flatMap((cover, i) => {
+    const layers = covers.flatMap((other, k): Layer[] =>
+      k === i ? [] : [{ label: other.label, field: k < i ? ending(other) : other.field, ends: ending(other) }],
+    );
+    return cover.edge ? [hemOf(cover, cover.edge, [{ label: 'Skin', field: skin, ends: skin }, ...layers])] : [];
+  });
   // Below the chin, which is lower on a larger head.
   const collar = (z: number) => 1.452 - 0.03 * (face.size - 1) - 0.12 * z;
   const onNail = folded(nails(rig));
@@ -224,26 +304,22 @@ export function personOf(
       { label: 'Skin', value: (_: number, y: number, z: number) => collar(z) - y },
     ],
     finer(x, y, z) {
-      // Edges grow most where a full sleeve is projected.
-      if (isFull && Math.abs(Math.abs(x) - rig.armJoints.elbow) < 0.05) return 0.027;
       // The outline of a nail is round.
       if (onNail(x, y, z) < 0.001) return 0.01;
       // The thumb and its muscle are pressed against what the hand holds.
       const beyondWrist = Math.abs(x) - rig.armJoints.wrist;
       if (beyondWrist > 0.06) return beyondWrist < 0.1 ? 0.017 : 0.024;
-      // Weights of the upper arm would spread along longer edges, and pull at a cuff.
-      const ofSleeve = Math.abs(x) > rig.armJoints.elbow && Math.abs(x) < measures.wears.top.sleeve - trimWidth;
-      if (ofSleeve) return 0.04;
       // The cap of a shoe is round.
       if (y < measures.wears.shoes && z > 0.1) return 0.034;
-      if (garments.some(({ edge }) => edge && isTrimmed(edge(Math.abs(x), y, z)))) return 0.025;
+      if (garments.some(({ edge }) => edge && isTrimmed(edge.past(Math.abs(x), y, z)))) return 0.027;
       return faceFineness(face, x, y, z);
     },
     shapes: Object.fromEntries(shapes) as Record<FaceShape, Displacement>,
     // A beard goes along with a mouth.
-    holds: (label, shape) => label === 'Hair' && !(measures.hair === 'curls' && shape === 'aa'),
+    holds: (label, shape) => label === 'Socket' || (label === 'Hair' && !(measures.hair === 'curls' && shape === 'aa')),
     pieces: eyesOf(face),
-    sink: sinkOf(face),
+    sinks: [...hems, sinkOf(face)],
+    worn: (x, y, z) => Math.min(skin(x, y, z), ...covers.map((cover) => ending(cover)(x, y, z))),
     tint(label, x, y, z) {
       if (label === 'Skin' && Math.abs(x) > rig.armJoints.wrist) return handTint(rig, x, y, z);
       return colors[label] ?? faceTint(face, label, x, y, z);

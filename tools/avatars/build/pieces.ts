@@ -1,6 +1,6 @@
-import type { Figure, Label, Piece } from './figure';
-import type { DistanceField, Point } from './signed-distance';
-import type { Surface } from './surface';
+import type { Figure, Label, Piece, Sink } from './figure';
+import { type DistanceField, gradient, type Point } from './signed-distance';
+import { middleOf, type Surface } from './surface';
 import type { Skinned } from './write-vrm';
 
 /** The distances over which the space before a surface is looked at [m]: less than limbs are apart, which move. */
@@ -56,97 +56,69 @@ export function ball(centre: Point, radius: number, angles: readonly number[], s
   return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
 }
 
-/**
- * Moves triangles inward and joins them to their edge by a wall, whose triangles are the last; `copies`: the original
- * of each added vertex.
- */
-function sunk(
-  { positions, indices }: Surface,
-  isSunk: (triangle: number) => boolean,
-  to: (x: number, y: number, z: number) => Point,
-): { readonly surface: Surface; readonly copies: readonly number[] } {
-  const copies: number[] = [];
-  const copyOf = new Map<number, number>();
-  const copy = (v: number): number => {
-    const known = copyOf.get(v) ?? positions.length / 3 + copies.push(v) - 1;
-    copyOf.set(v, known);
-    return known;
+/** A surface with labels, and the vertex of the surface before that each of its vertices belongs to. */
+export interface Sunk {
+  readonly surface: Surface;
+  readonly normals: Float32Array;
+  readonly labels: readonly Label[];
+  readonly origins: readonly number[];
+}
+
+/** Moves triangles inward and joins them to the edge above by a wall. `over`: where normals are taken from a field [m]. */
+export function sunk(before: Sunk, sink: Sink, over?: number): Sunk {
+  const { positions, indices } = before.surface;
+  const labels = [...before.labels];
+  const isInside = labels.map((label, t) => sink.isInside(label, middleOf(before.surface, 3 * t)));
+  /** The edges of triangles above, against their direction. */
+  const above = new Set<string>();
+  const each = (wanted: (t: number) => boolean, see: (a: number, b: number) => void): void => {
+    for (const t of isInside.keys()) {
+      const corners = pointAt(indices, t);
+      if (wanted(t)) for (const [e, a] of corners.entries()) see(a, corners[(e + 1) % 3]!);
+    }
   };
-  const edges = new Set<string>();
-  const result = Array.from(indices);
-  const sunkEdges: [number, number][] = [];
-  for (let t = 0; t < indices.length; t += 3) {
-    if (!isSunk(t / 3)) continue;
-    for (let e = 0; e < 3; e++) {
-      const [a, b] = [indices[t + e]!, indices[t + ((e + 1) % 3)]!];
-      edges.add(`${a} ${b}`);
-      sunkEdges.push([a, b]);
-      result[t + e] = copy(a);
+  each(
+    (t) => !isInside[t] && sink.isAbove(labels[t]!),
+    (a, b) => above.add(`${b} ${a}`),
+  );
+  const edges: [number, number][] = [];
+  each(
+    (t) => isInside[t]!,
+    (a, b) => above.has(`${a} ${b}`) && edges.push([a, b]),
+  );
+
+  const places = Array.from(positions);
+  const normals = Array.from(before.normals);
+  const origins = [...before.origins];
+  const put = (v: number, place: Point, field?: DistanceField): void => {
+    places.splice(3 * v, 3, ...place);
+    if (field) normals.splice(3 * v, 3, ...gradient(field, ...place, over));
+  };
+  const add = (like: number, place: Point, normal: Point = pointAt(before.normals, like)): number => {
+    normals.push(...normal);
+    origins.push(before.origins[like]!);
+    return places.push(...place) / 3 - 1;
+  };
+  /** From the edge inward, by the vertex of the edge. */
+  const rings = new Map<number, readonly number[]>();
+  for (const v of new Set(edges.flat())) {
+    const edge = pointAt(positions, v);
+    const inner = add(v, edge);
+    put(inner, sink.to(...edge), sink.onto);
+    rings.set(v, [v, ...sink.turned(...edge).map(({ place, normal }) => add(v, place, normal)), inner]);
+  }
+  const corners = Array.from(indices, (v, corner) => (isInside[Math.floor(corner / 3)] && rings.get(v)?.at(-1)) || v);
+  const moved = new Set(corners.filter((v, corner) => isInside[Math.floor(corner / 3)] && v < positions.length / 3));
+  for (const v of moved) put(v, sink.to(...pointAt(positions, v)), sink.onto);
+  for (const [a, b] of edges) {
+    const [ringA, ringB] = [rings.get(a)!, rings.get(b)!];
+    for (const [i, label] of sink.strips(...pointAt(positions, a)).entries()) {
+      corners.push(ringA[i]!, ringB[i]!, ringB[i + 1]!, ringA[i]!, ringB[i + 1]!, ringA[i + 1]!);
+      labels.push(label, label);
     }
   }
-  for (const [a, b] of sunkEdges) {
-    if (!edges.has(`${b} ${a}`)) result.push(a, b, copy(b), a, copy(b), copy(a));
-  }
-  const moved = copies.flatMap((v) => to(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!));
-  return {
-    surface: { positions: new Float32Array([...positions, ...moved]), indices: new Uint32Array(result) },
-    copies,
-  };
-}
-
-/** What is added to a body: a surface that continues its vertices, by the vertex that each is like. */
-interface Addition {
-  readonly positions: readonly number[];
-  readonly normals: readonly number[];
-  readonly indices: readonly number[];
-  readonly labels: readonly Label[];
-  readonly joints: readonly number[];
-  readonly weights: readonly number[];
-  readonly light: number;
-}
-
-function added(body: Skinned, more: Addition): Skinned {
-  const count = more.positions.length / 3;
-  const floats = (own: Float32Array, others: readonly number[]) => Float32Array.from([...own, ...others]);
-  return {
-    surface: {
-      positions: floats(body.surface.positions, more.positions),
-      indices: Uint32Array.from([...body.surface.indices, ...more.indices]),
-    },
-    normals: floats(body.normals, more.normals),
-    skin: {
-      joints: Uint8Array.from([...body.skin.joints, ...more.joints]),
-      weights: floats(body.skin.weights, more.weights),
-    },
-    labels: [...body.labels, ...more.labels],
-    ofHead: [...body.ofHead, ...more.labels.map(() => true)],
-    light: body.light && floats(body.light, new Array(count).fill(more.light)),
-    shapes: body.shapes.map(({ name, moves }) => ({ name, moves: floats(moves, new Array(3 * count).fill(0)) })),
-  };
-}
-
-/** Sinks the skin of a figure's openings. */
-function withFloors({ sink }: Figure, body: Skinned): Skinned {
-  if (!sink) return body;
-  const { surface, copies } = sunk(body.surface, (triangle) => body.labels[triangle] === sink.label, sink.to);
-  const [vertices, corners] = [body.surface.positions.length, body.surface.indices.length];
-  const walls = surface.indices.slice(corners);
-  const pick = (size: number, from: ArrayLike<number>) =>
-    copies.flatMap((v) => Array.from({ length: size }, (_, i) => from[size * v + i]!));
-  return added(
-    { ...body, surface: { positions: body.surface.positions, indices: surface.indices.slice(0, corners) } },
-    {
-      positions: Array.from(surface.positions.subarray(vertices)),
-      normals: pick(3, body.normals),
-      indices: Array.from(walls),
-      labels: Array.from({ length: walls.length / 3 }, (_, i) =>
-        sink.wall(...pointAt(surface.positions, walls[3 * (i - (i % 2))]!)),
-      ),
-      joints: pick(4, body.skin.joints),
-      weights: pick(4, body.skin.weights),
-      light: darkest,
-    },
-  );
+  const surface = { positions: new Float32Array(places), indices: new Uint32Array(corners) };
+  return { surface, normals: new Float32Array(normals), labels, origins };
 }
 
 const withPiece =
@@ -156,23 +128,43 @@ const withPiece =
     const first = body.surface.positions.length / 3;
     const places = Array.from({ length: surface.positions.length / 3 }, (_, v) => pointAt(surface.positions, v));
     const index = rig.bones.findIndex(({ name }) => name === bone);
-    return added(body, {
-      positions: places.flat(),
-      normals: places.flatMap((place) => {
-        const away = place.map((value, axis) => value - centre[axis]!);
-        return away.map((value) => value / Math.hypot(...away));
-      }),
-      indices: Array.from(surface.indices, (v) => first + v),
-      labels: labelsOf(piece),
-      joints: places.flatMap(() => [index, 0, 0, 0]),
-      weights: places.flatMap(() => [1, 0, 0, 0]),
-      light: 1,
+    const labels = labelsOf(piece);
+    const floats = (own: Float32Array, others: readonly number[]) => Float32Array.from([...own, ...others]);
+    const normals = places.flatMap((place) => {
+      const away = place.map((value, axis) => value - centre[axis]!);
+      return away.map((value) => value / Math.hypot(...away));
     });
+    return {
+      surface: {
+        positions: floats(body.surface.positions, places.flat()),
+        indices: Uint32Array.from([...body.surface.indices, ...Array.from(surface.indices, (v) => first + v)]),
+      },
+      normals: floats(body.normals, normals),
+      skin: {
+        joints: Uint8Array.from([...body.skin.joints, ...places.flatMap(() => [index, 0, 0, 0])]),
+        weights: floats(
+          body.skin.weights,
+          places.flatMap(() => [1, 0, 0, 0]),
+        ),
+      },
+      labels: [...body.labels, ...labels],
+      ofHead: [...body.ofHead, ...labels.map(() => true)],
+      light:
+        body.light &&
+        floats(
+          body.light,
+          places.map(() => 1),
+        ),
+      shapes: body.shapes.map(({ name, moves }) => ({
+        name,
+        moves: floats(moves, new Array(places.flat().length).fill(0)),
+      })),
+    };
   };
 
-/** Returns a body with the floors of its openings and its pieces. */
+/** Returns a body with its pieces. */
 export const withPieces = (figure: Figure, body: Skinned, labelsOf: (piece: Piece) => readonly Label[]): Skinned =>
-  (figure.pieces ?? []).reduce(withPiece(figure, labelsOf), withFloors(figure, body));
+  (figure.pieces ?? []).reduce(withPiece(figure, labelsOf), body);
 
 /** The steps of rounded places, per metre, and of rounded normals. */
 const placeSteps = 2 ** 16;

@@ -63,7 +63,7 @@ export interface Finger {
   readonly radius: number;
 }
 
-const unit = (x: number, y: number, z: number): Point => {
+export const unit = (x: number, y: number, z: number): Point => {
   const l = Math.hypot(x, y, z);
   return [x / l, y / l, z / l];
 };

@@ -8,6 +8,12 @@ export interface Surface {
   readonly indices: Uint32Array;
 }
 
+/** The middle of the triangle whose first corner has this place among the indices [m]. */
+export const middleOf = ({ positions, indices }: Surface, t: number): Point =>
+  [0, 1, 2].map(
+    (axis) => [0, 1, 2].reduce((sum, corner) => sum + positions[3 * indices[t + corner]! + axis]!, 0) / 3,
+  ) as unknown as Point;
+
 /** Cells of one block; a block far from the surface is skipped whole. */
 const blockCells = 8;
 
@@ -174,7 +180,7 @@ export function compact({ positions, indices }: Surface): Surface {
   return { positions: new Float32Array(kept), indices: compacted };
 }
 
-/** Vertices so near to a seam are put onto it [m]: no slivers. */
+/** Vertices so near to a seam are put onto it, unless a seam says otherwise [m]: no slivers. */
 const onSeam = 4e-4;
 
 type PlaceValue = (x: number, y: number, z: number) => number;
@@ -191,18 +197,44 @@ function zeroBetween(positions: readonly number[], a: number, b: number, value: 
   return bisect(0, 1, (t) => at(t) < 0 !== inside, halvings) + 2 ** -(halvings + 1);
 }
 
+/** How vertices are put onto a seam. */
+export interface Putting {
+  /** The distance within which they are [m]. */
+  readonly near: number;
+  /** The surface that they stay on; absent: they leave it by as little as is seen. */
+  readonly onto?: DistanceField;
+}
+
 /** Puts a vertex that is near to a seam onto it, along the value's gradient. */
-function putOnSeam(positions: number[], v: number, value: PlaceValue): void {
+function putOnSeam(positions: number[], v: number, value: PlaceValue, { near, onto }: Putting): void {
   const step = 1e-4;
-  const [x, y, z] = [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!];
-  const slope = [
-    (value(x + step, y, z) - value(x - step, y, z)) / (2 * step),
-    (value(x, y + step, z) - value(x, y - step, z)) / (2 * step),
-    (value(x, y, z + step) - value(x, y, z - step)) / (2 * step),
-  ] as const;
-  const far = value(x, y, z) / (slope[0] ** 2 + slope[1] ** 2 + slope[2] ** 2);
-  if (!(Math.abs(far) < 2 * onSeam)) return;
-  for (let axis = 0; axis < 3; axis++) positions[3 * v + axis]! -= far * slope[axis]!;
+  for (let round = 0; round < (onto ? 3 : 1); round++) {
+    const [x, y, z] = [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!];
+    const slope = [
+      (value(x + step, y, z) - value(x - step, y, z)) / (2 * step),
+      (value(x, y + step, z) - value(x, y - step, z)) / (2 * step),
+      (value(x, y, z + step) - value(x, y, z - step)) / (2 * step),
+    ] as const;
+    const far = value(x, y, z) / (slope[0] ** 2 + slope[1] ** 2 + slope[2] ** 2);
+    if (!(Math.abs(far) < 2 * near)) return;
+    const put = Float32Array.of(x - far * slope[0], y - far * slope[1], z - far * slope[2]);
+    positions.splice(
+      3 * v,
+      3,
+      ...(onto ? projectOnto(onto, { positions: put, indices: new Uint32Array() }, 2).positions : put),
+    );
+  }
+}
+
+/** Of triangles with all corners near to a seam, the corner that is farthest: on a seam, they would have no area. */
+function farthestOfFlat({ indices }: Surface, far: (v: number) => number | null): ReadonlySet<number> {
+  const kept = new Set<number>();
+  for (let t = 0; t < indices.length; t += 3) {
+    const corners = Array.from(indices.subarray(t, t + 3), (v) => ({ v, far: kept.has(v) ? null : far(v) }));
+    if (corners.some((corner) => corner.far === null)) continue;
+    kept.add(corners.reduce((most, corner) => (corner.far! > most.far! ? corner : most)).v);
+  }
+  return kept;
 }
 
 /**
@@ -210,13 +242,21 @@ function putOnSeam(positions: number[], v: number, value: PlaceValue): void {
  * vertices lie. `settled`: vertices of seams that were cut before, which stay where they are; those of this one are
  * added.
  */
-export function cutAlong(surface: Surface, value: PlaceValue, settled: Set<number>): Surface {
+export function cutAlong(
+  surface: Surface,
+  value: PlaceValue,
+  settled: Set<number>,
+  putting: Putting = { near: onSeam },
+): Surface {
   const positions = Array.from(surface.positions);
+  const valueAt = (v: number) => value(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!);
+  const far = (v: number) => (Math.abs(valueAt(v)) < putting.near ? Math.abs(valueAt(v)) : null);
+  const kept = putting.onto ? farthestOfFlat(surface, far) : new Set<number>();
   const sides: number[] = [];
   const sideOf = (v: number): number => {
-    const own = value(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!);
-    if (Math.abs(own) >= onSeam) return Math.sign(own);
-    if (!settled.has(v)) putOnSeam(positions, v, value);
+    const own = valueAt(v);
+    if (Math.abs(own) >= (settled.has(v) || kept.has(v) ? onSeam : putting.near)) return Math.sign(own);
+    if (!settled.has(v)) putOnSeam(positions, v, value, putting);
     settled.add(v);
     return 0;
   };
@@ -236,6 +276,7 @@ export function cutAlong(surface: Surface, value: PlaceValue, settled: Set<numbe
       for (let axis = 0; axis < 3; axis++) {
         positions.push(positions[3 * first + axis]! * (1 - t) + positions[3 * second + axis]! * t);
       }
+      if (putting.onto) putOnSeam(positions, vertex, value, putting);
       sides[vertex] = 0;
       settled.add(vertex);
       between.set(key, vertex);
@@ -323,40 +364,6 @@ function trianglesOf(polygon: readonly number[]): number[] {
   const from = [0, 2, 4].find((i) => polygon[(i + 1) % 6]! >= 0 && polygon[(i + 3) % 6]! >= 0)!;
   const [a, ab, b, bc, c] = [0, 1, 2, 3, 4].map((i) => corner(from, i)) as [number, number, number, number, number];
   return [ab, b, bc, a, ab, bc, a, bc, c];
-}
-
-/** The mean of a value per vertex over its neighbours, `rounds` times; channels are interleaved. */
-export function smoothOver(
-  surface: Surface,
-  values: Float32Array,
-  channels: number,
-  rounds: number,
-  rate: number,
-): void {
-  const vertices = surface.positions.length / 3;
-  const neighbours: Set<number>[] = Array.from({ length: vertices }, () => new Set());
-  for (let t = 0; t < surface.indices.length; t += 3) {
-    for (let e = 0; e < 3; e++) {
-      const a = surface.indices[t + e]!;
-      const b = surface.indices[t + ((e + 1) % 3)]!;
-      neighbours[a]!.add(b);
-      neighbours[b]!.add(a);
-    }
-  }
-  let from = values.slice();
-  const to = values;
-  for (let round = 0; round < rounds; round++) {
-    for (let v = 0; v < vertices; v++) {
-      const around = neighbours[v]!;
-      for (let c = 0; c < channels; c++) {
-        let sum = 0;
-        for (const n of around) sum += from[n * channels + c]!;
-        const own = from[v * channels + c]!;
-        to[v * channels + c] = own + (around.size ? sum / around.size - own : 0) * rate;
-      }
-    }
-    from = to.slice();
-  }
 }
 
 /** Returns the largest of the connected parts of a surface: fields of hair leave crumbs. */

@@ -1,7 +1,7 @@
 import { type Anatomy, foldedX } from './anatomy';
 import { type BodyRig, hipLine } from './rig';
 import { smoothstep } from './signed-distance';
-import { type Surface, smoothOver } from './surface';
+import type { Surface } from './surface';
 
 /** Four bones and weights per vertex; weights sum to 1. */
 export interface SkinWeights {
@@ -93,6 +93,16 @@ const armHinges = ({ shoulder, elbow, wrist }: BodyRig['armJoints']): readonly H
     },
   }));
 
+/** The neck takes skin from a ring about its root on, which is higher behind, and so leaves collars to the chest. */
+const neckHinge: Hinge = {
+  bones: ['upperChest', 'neck'],
+  partsAt(x, y, z) {
+    if (x > 0.12 || y < 1.36) return null;
+    const share = smoothstep(1.44, 1.505, y + 0.12 * z);
+    return [1 - share, share];
+  },
+};
+
 /** How skin passes from the bone above a joint of the leg to the one below. */
 interface LegJointSkin {
   /** The middle, above the joint, and half the height of the range, ahead of the joint and behind it [m]. */
@@ -169,7 +179,7 @@ const otherSide = (bone: string): string =>
 function shareAtHinges({ positions }: Surface, dense: Float32Array, anatomy: Anatomy): void {
   const { bones, armJoints } = anatomy.rig;
   const boneIndex = new Map(bones.map((bone, index) => [bone.name, index]));
-  const hinges = [...armHinges(armJoints), ...legHinges(anatomy)].map((hinge) => ({
+  const hinges = [...armHinges(armJoints), ...legHinges(anatomy), neckHinge].map((hinge) => ({
     ...hinge,
     left: hinge.bones.map((name) => boneIndex.get(name)!),
     right: hinge.bones.map((name) => boneIndex.get(otherSide(name))!),
@@ -185,6 +195,48 @@ function shareAtHinges({ positions }: Surface, dense: Float32Array, anatomy: Ana
         row[own[i]!] = sum * part;
       });
     }
+  }
+}
+
+/** Edges shorter than this count like it [m]. */
+const shortestEdge = 0.002;
+
+/**
+ * The mean of a value per vertex over its neighbours, `rounds` times; channels are interleaved. Near neighbours count
+ * for more, so that long edges beside short ones pull nothing along.
+ */
+function smoothOver(
+  { positions, indices }: Surface,
+  values: Float32Array,
+  channels: number,
+  rounds: number,
+  rate: number,
+): void {
+  const vertices = positions.length / 3;
+  const neighbours: Map<number, number>[] = Array.from({ length: vertices }, () => new Map());
+  for (let t = 0; t < indices.length; t += 3) {
+    for (let e = 0; e < 3; e++) {
+      const [a, b] = [indices[t + e]!, indices[t + ((e + 1) % 3)]!];
+      const apart = Math.hypot(...[0, 1, 2].map((axis) => positions[3 * a + axis]! - positions[3 * b + axis]!));
+      const share = 1 / (apart + shortestEdge) ** 2;
+      neighbours[a]!.set(b, share);
+      neighbours[b]!.set(a, share);
+    }
+  }
+  let from = values.slice();
+  const to = values;
+  for (let round = 0; round < rounds; round++) {
+    for (let v = 0; v < vertices; v++) {
+      const around = neighbours[v]!;
+      const whole = [...around.values()].reduce((sum, share) => sum + share, 0);
+      for (let c = 0; c < channels; c++) {
+        let sum = 0;
+        for (const [n, share] of around) sum += share * from[n * channels + c]!;
+        const own = from[v * channels + c]!;
+        to[v * channels + c] = own + (whole > 0 ? sum / whole - own : 0) * rate;
+      }
+    }
+    from = to.slice();
   }
 }
 
@@ -205,4 +257,11 @@ function strongest(dense: Float32Array, vertices: number, bones: number): SkinWe
     });
   }
   return { joints, weights };
+}
+
+/** Returns the weights of vertices that are copies of weighed ones. */
+export function copiedWeights({ joints, weights }: SkinWeights, origins: readonly number[]): SkinWeights {
+  const pick = (from: Uint8Array | Float32Array) =>
+    origins.flatMap((v) => Array.from(from.subarray(influences * v, influences * (v + 1))));
+  return { joints: Uint8Array.from(pick(joints)), weights: Float32Array.from(pick(weights)) };
 }
