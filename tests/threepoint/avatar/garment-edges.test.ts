@@ -89,7 +89,7 @@ function isLining({ mesh, corners }: Triangle): boolean {
 }
 
 const sides = 40;
-/** So many of a thousand rays may graze a fold that is too small to be seen. */
+/** The number of rays of a thousand that may graze a fold too small to be seen. */
 const grazing = 1;
 /** Steps along an edge, before and past it [m]. */
 const heights = Array.from({ length: 31 }, (_, i) => 0.002 * (i - 15));
