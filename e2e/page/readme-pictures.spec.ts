@@ -84,6 +84,7 @@ freshTest('inverse kinematics beside the learned network as a moving picture @ni
   const { parts } = await exportMotion(recording, { format: 'bvh', estimator: 'ik' });
   await page.route('**/actor.bvh', (route) => route.fulfill({ body: parts.join('') }));
   await open(page, 'mocap=actor.bvh&estimator=learned&beside=ik&truth=off&quality=high&panel=off&view=front');
+  await card(page).getByRole('button', { name: 'More' }).click();
   await expect(card(page).getByLabel('Compared with')).toHaveValue('ik');
   await rest(page);
   await card(page).getByLabel('Time of the clip').fill('0.5');
