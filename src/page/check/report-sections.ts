@@ -161,7 +161,7 @@ function bodySection(report: HeadsetReport): ReportSection {
           label: capitalised(jointLabels[joint]),
           value: counted(`${distances[joint].toFixed(1)} cm`, frames),
         }))
-      : [{ label: 'Not compared', value: complaint ?? reasonIn(report, 'the device reports no body') }],
+      : [{ label: 'Not compared', value: reasonIn(report, complaint ?? 'the device reports no body') }],
     note: distances ? 'Mean distance from the learned body. Neither is the ground truth.' : '',
   };
 }
