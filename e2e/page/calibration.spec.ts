@@ -1,5 +1,16 @@
 import { armSpanFromFingertipSpan } from 'threepoint/core';
-import { enterVr, expect, freshTest, joint, load, openWithHeadset, probe, settledJoint, test } from '../page-fixture';
+import {
+  enterVr,
+  expect,
+  freshTest,
+  joint,
+  load,
+  openWithHeadset,
+  overlap,
+  probe,
+  settledJoint,
+  test,
+} from '../page-fixture';
 
 const withHeadset = 'emulate&actor=off&quality=low';
 
@@ -138,10 +149,14 @@ test('a corrected grip moves the drawn wrist and is remembered after a reload', 
   await enterVr(page);
   await headset.place(armsAhead);
   await page.getByRole('button', { name: 'Controls' }).click();
+  await expect(page.locator('#emulator')).toBeVisible();
+  expect(await overlap(page, '.panel', '#emulator')).toBe(false);
+  await expect(page.getByText('Stored for the controllers “Meta Quest Touch Plus”.')).toBeVisible();
   const position = page.getByRole('slider', { name: 'Wrist position' });
   await expect(position).toHaveValue('0');
   const before = await settledJoint(page, 'rightHand');
   await position.fill('5');
+  await expect(page.getByText('5 cm further from the grip')).toBeVisible();
   await expect.poll(async () => (await joint(page, 'rightHand'))[2] - before[2]).toBeCloseTo(0.05, 2);
   await load(page, withHeadset);
   await expect(page.getByRole('slider', { name: 'Wrist position' })).toHaveValue('5');

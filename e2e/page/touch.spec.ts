@@ -1,6 +1,8 @@
 import { devices, type Page } from '@playwright/test';
+import { goldenMocap } from '../../tests/threepoint/core/mocap/golden-mocap';
 import { drawSeldom } from '../draw-seldom';
 import { driveTime, endDrivenTime } from '../driven-time';
+import { card, choose } from '../mocap-card';
 import { collectErrors, expect, gameOn, keepPicture, overlap, probe, freshTest as test } from '../page-fixture';
 
 /** Opens the page on a phone with this width and height [CSS pixels]. */
@@ -79,6 +81,34 @@ test.describe('on a phone', () => {
       expect(errors).toEqual([]);
     } finally {
       await context.close();
+    }
+  });
+});
+
+test.describe('on a turned phone', () => {
+  test.use({ ...pixel, viewport: { width: 390, height: 844 } });
+
+  test('an open motion does not widen the page when the phone is turned and turned back', async ({ page }) => {
+    const motionFiles = Object.entries(goldenMocap[0]!.files).map(([name, text]) => ({
+      name,
+      mimeType: 'text/plain',
+      buffer: Buffer.from(text),
+    }));
+    await openOnPhone(page, '&actor=off');
+    const controls = page.getByRole('button', { name: 'Controls' });
+    await controls.tap();
+    await choose(page, motionFiles);
+    await controls.tap();
+    await expect(card(page)).toBeVisible({ timeout: 60_000 });
+    for (const [width, height] of [
+      [844, 390],
+      [390, 844],
+      [320, 640],
+    ] as const) {
+      await page.setViewportSize({ width, height });
+      await expect.poll(() => page.evaluate(() => [innerWidth, innerHeight])).toEqual([width, height]);
+      const motion = (await card(page).boundingBox())!;
+      expect(motion.x + motion.width).toBeLessThanOrEqual(width);
     }
   });
 });

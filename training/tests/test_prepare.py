@@ -134,7 +134,7 @@ def test_a_head_that_is_upside_down_throughout_was_turned_at_rest(tmp_path: Path
     assert corpus.clips == ("p1_walk", "p1_wrong")
     plain, wrong = corpus.rotations[:60, 0], corpus.rotations[60:, 0]
     assert np.abs(np.sum(plain * wrong, axis=-1)).min() > 1 - 1e-6
-    assert "its bones at rest are no T-pose" in corpus.problems[0]
+    assert "its rest pose is not a T-pose" in corpus.problems[0]
 
 
 def test_a_somersault_is_kept(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ import { ResultCard } from './result-card';
 /** The estimators whose networks are loaded before the session; the last one draws first. */
 const preloaded = ['paper', 'learned'] as const;
 
-const camerasText = 'As the address asks, hands outside the view of a headset’s cameras are lost.';
+const camerasText = 'This address simulates a headset’s cameras: hands outside their view are lost.';
 /** What a visitor without a headset can expect. */
 const emulatedText =
   'You can try the check in an emulated headset, which mouse and keys move. It has no sensors: noise, lost hands and ' +

@@ -39,6 +39,9 @@ const latencyText = (quantiles: HeadsetReport['latency']['displayAhead']): strin
   quantiles ? counted(times(quantiles), quantiles.frames) : 'not known: this browser reports no usable time';
 const titleOf = (world: WorldName): string => worlds.find(({ name }) => name === world)?.title ?? world;
 const notMeasured = (reason: string): string => `Not measured: ${reason}. Measure again.`;
+const endedEarly = 'the check ended too early';
+/** Returns why a part was not measured: the early end of the check, else the reason of the part. */
+const reasonIn = ({ session }: HeadsetReport, reason: string): string => (session.complete ? reason : endedEarly);
 /** Returns the lines; without one, the reason for it. */
 const orNotMeasured = (
   lines: ReportSection['lines'],
@@ -70,7 +73,8 @@ function aboutDevice({ device, session, features }: HeadsetReport): ReportSectio
   };
 }
 
-function noiseSection({ noise, unmeasured }: HeadsetReport): ReportSection {
+function noiseSection(report: HeadsetReport): ReportSection {
+  const { noise, unmeasured } = report;
   const measured = noise.flatMap(({ tracker, source, frames, positionMm, rotationDegrees, repeated }) => {
     const position = `${positionMm.frame.toFixed(3)} mm by frame, ${positionMm.slow.toFixed(3)} mm at 0.1 s; sway ${positionMm.sway.toFixed(1)} mm`;
     const rotation = `${rotationDegrees.frame.toFixed(4)}° by frame, ${rotationDegrees.slow.toFixed(4)}° at 0.1 s; sway ${rotationDegrees.sway.toFixed(2)}°`;
@@ -87,14 +91,14 @@ function noiseSection({ noise, unmeasured }: HeadsetReport): ReportSection {
       ...measured,
       ...unmeasured.map(({ tracker, frames, moved }) => {
         const reason = frames === 0 ? 'it was not seen' : `too few steady frames (${framesText(frames)})`;
-        return { label: trackers[tracker], value: notMeasured(moved ? 'you moved' : reason) };
+        return { label: trackers[tracker], value: notMeasured(reasonIn(report, moved ? 'you moved' : reason)) };
       }),
     ],
     note: 'Standard deviation by axis, from second differences. Sway of the body is not counted, tremor is.',
   };
 }
 
-function lossSection({ losses }: HeadsetReport): ReportSection {
+function lossSection(report: HeadsetReport): ReportSection {
   const bars = (lengthsMs: readonly number[]) =>
     histogramOf(lengthsMs)
       .flatMap((count, bar) => (count > 0 ? [`${count} ${rangeOf(bar)}`] : []))
@@ -102,13 +106,13 @@ function lossSection({ losses }: HeadsetReport): ReportSection {
   return {
     title: 'Lost hands',
     lines: orNotMeasured(
-      losses.map(({ hand, source, lengthsMs, observedSeconds, openEnd }) => ({
+      report.losses.map(({ hand, source, lengthsMs, observedSeconds, openEnd }) => ({
         label: `${trackers[hand]} (${source})`,
         value:
           `Losses in ${observedSeconds.toFixed(0)} s: ${bars(lengthsMs) || 'none'}` +
           `${openEnd ? '; lost at the end' : ''}`,
       })),
-      { label: 'Hands', reason: 'no hand was seen' },
+      { label: 'Hands', reason: reasonIn(report, 'no hand was seen') },
     ),
     note: 'A loss lasts until the hand is seen again, so it includes the time for which it was hidden.',
   };
@@ -129,7 +133,7 @@ function frameSection({ frameTimes }: HeadsetReport): ReportSection {
         label: `${titleOf(world)}, ${estimator}${drawnBy === estimator ? '' : ` (drawn by ${drawnBy})`}`,
         value: counted(`${times(work)}; ${missed} late`, work.frames),
       })),
-      { label: 'Frames', reason: 'the check ended too early' },
+      { label: 'Frames', reason: endedEarly },
     ),
     note: 'How long the page’s thread works on a frame. The graphics device goes on after it: late frames include both.',
   };
@@ -148,8 +152,8 @@ function latencySection({ latency }: HeadsetReport): ReportSection {
   };
 }
 
-function bodySection({ bodyTracking }: HeadsetReport): ReportSection {
-  const { frames, complaint, joints: distances } = bodyTracking;
+function bodySection(report: HeadsetReport): ReportSection {
+  const { frames, complaint, joints: distances } = report.bodyTracking;
   return {
     title: 'Body tracking against our body',
     lines: distances
@@ -157,7 +161,7 @@ function bodySection({ bodyTracking }: HeadsetReport): ReportSection {
           label: capitalised(jointLabels[joint]),
           value: counted(`${distances[joint].toFixed(1)} cm`, frames),
         }))
-      : [{ label: 'Not compared', value: complaint ?? 'the device reports no body' }],
+      : [{ label: 'Not compared', value: reasonIn(report, complaint ?? 'the device reports no body') }],
     note: distances ? 'Mean distance from the learned body. Neither is the ground truth.' : '',
   };
 }

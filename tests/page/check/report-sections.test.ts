@@ -71,12 +71,26 @@ test('parts that were not measured give the reason and what to do', () => {
     { tracker: 'left', frames: 0, moved: false },
     { tracker: 'right', frames: 70, moved: false },
   ] as const;
-  const sections = reportSections({ ...sample!, noise: [], unmeasured: [...unmeasured], losses: [], frameTimes: [] });
-  expect(sections.slice(1, 4).flatMap(({ lines }) => lines)).toEqual([
+  const bodyTracking = { frames: 0, complaint: null, joints: null };
+  const lines = (complete: boolean) =>
+    reportSections({
+      ...sample!,
+      session: { ...sample!.session, complete },
+      noise: [],
+      unmeasured: [...unmeasured],
+      losses: [],
+      frameTimes: [],
+      bodyTracking,
+    }).flatMap((section, index) => (index === 0 || section.title === 'Latency' ? [] : section.lines));
+  expect(lines(true)).toEqual([
     { label: 'Head', value: 'Not measured: you moved. Measure again.' },
     { label: 'Left hand', value: 'Not measured: it was not seen. Measure again.' },
     { label: 'Right hand', value: 'Not measured: too few steady frames (70 frames). Measure again.' },
     { label: 'Hands', value: 'Not measured: no hand was seen. Measure again.' },
     { label: 'Frames', value: 'Not measured: the check ended too early. Measure again.' },
+    { label: 'Not compared', value: 'the device reports no body' },
   ]);
+  const early = lines(false);
+  expect(early).toHaveLength(6);
+  for (const { value } of early) expect(value).toContain('the check ended too early');
 });

@@ -117,7 +117,8 @@ function Measures({ state, actions }: PanelPageProps) {
 
 interface SliderProps {
   readonly label: string;
-  readonly unit: string;
+  /** Returns a value in words. */
+  readonly inWords: (value: number) => string;
   /** The largest value; the smallest is its negative. */
   readonly most: number;
   readonly value: number;
@@ -125,22 +126,49 @@ interface SliderProps {
 }
 
 /** A correction to both sides of 0, in whole units. */
-const Slider = ({ label, unit, most, value, set }: SliderProps) => (
-  <label class="labelled">
+const Slider = ({ label, inWords, most, value, set }: SliderProps) => (
+  <label class="slider">
     <span>{label}</span>
+    <span class="time">{inWords(value)}</span>
     <input
       type="range"
       min={-most}
       max={most}
       step={1}
       aria-label={label}
-      aria-valuetext={`${rounded(value)} ${unit}`}
+      aria-valuetext={inWords(value)}
       value={Math.round(value)}
       onInput={({ currentTarget }) => set(currentTarget.valueAsNumber)}
     />
-    <i>{`${rounded(value)} ${unit}`}</i>
   </label>
 );
+
+/** Returns the words for a value to either side of 0. */
+const eitherSide =
+  (unit: string, above: string, below: string) =>
+  (value: number): string => {
+    const size = `${rounded(Math.abs(value))}${unit}`;
+    if (Math.round(value) === 0) return size;
+    return `${size} ${value > 0 ? above : below}`;
+  };
+
+const wristDistance = eitherSide(' cm', 'further from the grip', 'nearer to the grip');
+const wristAngle = eitherSide('°', 'towards the thumb', 'towards the little finger');
+
+/** The parts of profile names whose spelling differs from a capitalised word. */
+const brandWords: Readonly<Record<string, string>> = {
+  htc: 'HTC',
+  mx: 'MX',
+  bytedance: 'ByteDance',
+  galaxyxr: 'Galaxy XR',
+};
+
+/** Returns the name of a controller in words, from its profile name such as `meta-quest-touch-plus`. */
+const controllerName = (profile: string): string =>
+  profile
+    .split('-')
+    .map((word) => brandWords[word] ?? word.charAt(0).toUpperCase() + word.slice(1))
+    .join(' ');
 
 /** How the user holds the controllers that were used last. */
 function Grip({ grip, actions }: { readonly grip: GripCorrection; readonly actions: PanelPageProps['actions'] }) {
@@ -149,19 +177,19 @@ function Grip({ grip, actions }: { readonly grip: GripCorrection; readonly actio
     <section>
       <h2>Your grip</h2>
       <p class="hint">
-        Look at your hands with the headset on. Move these until the drawn wrists lie on yours. Stored for {grip.device}
-        .
+        If the drawn wrists are not at yours in VR, move them here. Both hands move. Stored for the controllers “
+        {controllerName(grip.device)}”.
       </p>
       <Slider
         label="Wrist position"
-        unit="cm"
+        inWords={wristDistance}
         most={100 * largestGripOffset.ahead}
         value={grip.aheadCm}
         set={(aheadCm) => correct({ aheadCm })}
       />
       <Slider
         label="Wrist angle"
-        unit="°"
+        inWords={wristAngle}
         most={60}
         value={grip.leanDegrees}
         set={(leanDegrees) => correct({ leanDegrees })}

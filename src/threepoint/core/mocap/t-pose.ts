@@ -303,7 +303,7 @@ export function findTPose(file: ImportedMotion, joints: BodyJoints): TPose {
   if (finder.changed.size > 0) {
     const source = body.posed ? 'that of its first frame was taken' : 'it was estimated from the motion';
     const sure = finder.sureness < 1 ? `, ${finder.sureness.toFixed(2)} of 1 sure` : '';
-    notes.push(`its bones at rest are no T-pose; ${source} (${[...finder.changed].join(', ')}${sure})`);
+    notes.push(`its rest pose is not a T-pose; ${source} (${[...finder.changed].join(', ')}${sure})`);
     if (sure) notes.push('gaze and hands are taken to be straight on average; most motions bend them by 5° to 30°');
   }
   const pose = poseOf(

@@ -150,7 +150,7 @@ describe('a BVH is read alike with', () => {
   test('hands that hang from level arms at rest and never in the motion, which is said', () => {
     const { clips, notes } = prepare(madeBvh({ anglesOf: { LeftHand: [-90, 0, 0], RightHand: [90, 0, 0] } }));
     expect(notes.join('\n')).toMatch(
-      /bones at rest are no T-pose; it was estimated from the motion \(left hand, right hand\)/,
+      /rest pose is not a T-pose; it was estimated from the motion \(left hand, right hand\)/,
     );
     for (const hand of [7, 14]) {
       const turnOf = (from: Float32Array) => {

@@ -82,7 +82,7 @@ describe('a walk is read as with its T-pose at rest where', () => {
     expect(hands).toBeLessThan(5);
     expect(taller).toBeLessThan(0.01);
     expect(notes).toMatch(
-      /bones at rest are no T-pose; it was estimated from the motion \(trunk, head, left arm.* of 1 sure\)/,
+      /rest pose is not a T-pose; it was estimated from the motion \(trunk, head, left arm.* of 1 sure\)/,
     );
   });
 
