@@ -18,6 +18,7 @@ import { forwardKinematics } from '../../../src/threepoint/core/body/forward-kin
 import { averageSkeleton } from '../../../src/threepoint/core/body/skeleton';
 import { createIk } from '../../../src/threepoint/core/estimation/estimators';
 import { yawOfHips } from '../../../src/threepoint/core/estimation/gait/gait-features';
+import type { PoseEstimator } from '../../../src/threepoint/core/estimation/pose-estimator';
 import { clamp, smoothstep } from '../../../src/threepoint/core/math/damper';
 import { evenly } from '../core/arbitraries';
 import { tracked } from '../core/estimation/moving-person';
@@ -66,7 +67,7 @@ export const acts: fc.Arbitrary<Act[]> = fc.array(
 /** Legs that reach the floor from the hips of the calibrated body. */
 export const legProportions = { ...proportions, upper: 0.43, lower: 0.43 };
 
-const calibration: Calibration = { eyeHeight, armSpan: 1.55 };
+export const calibration: Calibration = { eyeHeight, armSpan: 1.55 };
 const { eyesInHead } = averageSkeleton(calibration);
 const rateHz = 60;
 /** The time [s] that a person rests after each act. */
@@ -113,9 +114,10 @@ export interface ActedFrame {
   readonly act: string;
 }
 
-/** Returns copies of the legs that are drawn under the body which IK estimates of these acts, one after the other. */
-export function actedFrames(script: readonly Act[]): ActedFrame[] {
-  const estimator = createIk(calibration);
+/**
+ * Returns copies of the legs that are drawn under the body which an estimator draws of these acts, one after the other.
+ */
+export function actedFrames(script: readonly Act[], estimator: PoseEstimator = createIk(calibration)): ActedFrame[] {
   const skeleton = averageSkeleton(calibration);
   const drawn = createLegs(legProportions);
   const acted: ActedFrame[] = [];

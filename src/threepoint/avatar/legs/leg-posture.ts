@@ -144,6 +144,19 @@ function spreadKnee({ axis }: ElbowCircle, bend: MutableVec3, side: Side, reach:
 }
 
 /**
+ * Moves an ankle that is closer to its hip than `least` [m] ahead, the further the closer it is: between a hip and an
+ * ankle right under it, centimetres decide whether the knee is on the floor or at the chest. `ahead`: unit, level.
+ */
+function unfold(hip: Vec3, ankle: MutableVec3, ahead: Vec3, least: number): void {
+  subtract(ankle, hip, line);
+  const missing = least * least - dot(line, line);
+  if (missing <= 0) return;
+  const along = dot(line, ahead);
+  const way = Math.sqrt(along * along + missing) - along;
+  addScaled(ankle, ahead, (way * missing) / (least * least), ankle);
+}
+
+/**
  * Turns the direction of a knee on its circle up, as little as keeps the knee on the floor: of a squatting or kneeling
  * person. A knee straight below its circle goes outward.
  */
@@ -281,10 +294,11 @@ export class LegPosture {
     rotate(fromAxisAngle(up, step.yaw, footTurn), forward, toes);
     if (trackedWeight > 0) lerp(toes, rotate(foot, forward, trackedToes), trackedWeight, toes);
     normalise(add(toes, levelForward, pole), levelForward, pole);
+    unfold(hip, ankle, pole, (upper + lower) * closedLeg * (1 - trackedWeight));
     const circle = elbowCircle(hip, ankle, this.proportions, levelForward, kneeCircle);
     // The knee's own hinge stays level: along a leg that lies ahead of its hip, the pole itself has no direction.
     cross(cross(pole, up, hinge), circle.axis, bend);
-    spreadKnee(circle, poleAcross(circle.axis, bend, fallbacks, bend), side, far / (upper + lower));
+    spreadKnee(circle, poleAcross(circle.axis, bend, fallbacks, bend), side, circle.span / (upper + lower));
     keepAboveFloor(circle, bend, side);
     elbowOnCircle(circle, bend, knee);
     // Both bones lie in the plane across the hinge, which is defined even where a thigh points to its knee's pole.
