@@ -132,7 +132,7 @@ def test_a_skeleton_folded_along_an_axis_is_read_as_the_plain_one(tmp_path: Path
         np.testing.assert_allclose(
             corpus.positions[frames[name]], corpus.positions[frames["plain"]], atol=1e-5, err_msg=name
         )
-    assert "no T-pose" in corpus.problems[0]
+    assert "not a T-pose" in corpus.problems[0]
 
 
 def test_one_bad_file_does_not_end_the_reading_of_the_others(tmp_path: Path) -> None:
