@@ -33,9 +33,13 @@ const Swatches = <Name extends string>({ title, looks, chosen, disabled, choose 
   </Group>
 );
 
-const ownLook = { name: ownColours, label: 'its own', color: 'linear-gradient(135deg, #1d9a86 50%, #2c3350 50%)' };
+const ownLook = {
+  name: ownColours,
+  label: 'its own',
+  color: 'linear-gradient(135deg, #1d9a86 50%, #2c3350 50%)',
+} as const;
 const clothes = [ownLook, ...palettes.map((palette) => ({ ...palette, label: palette.label.toLowerCase() }))];
-const skins = skinTones.map((name) => ({ name, label: name, color: skinColors[name] }));
+const skins = [ownLook, ...skinTones.map((name) => ({ name, label: name, color: skinColors[name] }))];
 
 /** Shows the current avatar: its name, its colours if it is built in, and the bones of a file. */
 function ShownAvatar({ state, actions }: PanelPageProps) {
@@ -63,9 +67,9 @@ function ShownAvatar({ state, actions }: PanelPageProps) {
         <Swatches
           title="Skin"
           looks={skins}
-          chosen={state.skinTone}
+          chosen={state.skinTone ?? ownColours}
           disabled={builtInBody === null || builtInBody === defaultAvatar}
-          choose={(tone) => actions.chooseSkinTone(tone)}
+          choose={(tone) => actions.chooseSkinTone(tone === ownColours ? undefined : tone)}
         />
         {state.builtInAvatarOffered && (
           <Button label="Back to the page’s avatar" onClick={() => actions.showBuiltInAvatar()} />

@@ -57,7 +57,8 @@ function avatarActions({ writer, avatar }: StageParts, files: FileOpener) {
       writer.keep({ builtInBody });
       files.showBuiltInAvatar();
     },
-    chooseSkinTone(skinTone: SkinTone) {
+    /** Undefined: that of the body's file. */
+    chooseSkinTone(skinTone: SkinTone | undefined) {
       writer.keep({ skinTone });
       files.showBuiltInAvatar();
     },
