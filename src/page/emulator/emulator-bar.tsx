@@ -41,8 +41,8 @@ export function createEmulatorBar(region: HTMLElement, { setActor, lookAround, s
         </div>
         <Button label="Take over" class="primary" hidden={!shown?.actor} onClick={() => setActor?.(false)} />
         <Button label="Look and walk" hidden={!isUsers || isTouchFirst()} onClick={lookAround} />
-        <Button label="Let the actor move" hidden={!isUsers || !setActor} onClick={() => setActor?.(true)} />
-        <Button label="Stop" hidden={!stop} onClick={() => stop?.()} />
+        {setActor && <Button label="Let the actor move" hidden={!isUsers} onClick={() => setActor(true)} />}
+        {stop && <Button label="Stop" onClick={stop} />}
       </>,
       region,
     );
