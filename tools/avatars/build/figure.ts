@@ -88,7 +88,7 @@ export interface Piece {
   readonly bone: string;
 }
 
-/** Where the surface goes inward beneath an edge, as at eyes and under cloth, and the wall that joins it to the edge. */
+/** The surface beneath an edge, which goes inward at eyes and under cloth, and the wall that joins it to the edge. */
 export interface Sink {
   /** Whether a triangle with this label and middle goes inward, and whether one beside it ends in an edge. */
   readonly isInside: (label: Label, middle: Point) => boolean;

@@ -23,7 +23,7 @@ export interface GarmentStyle {
   readonly shoes: number;
 }
 
-/** Where cloth ends: how far a place is past the nearest edge, negative before it [m], and what its rim and inside are. */
+/** The distance of a place past the nearest edge of cloth [m], negative before it, with the labels of rim and inside. */
 export interface GarmentEdge {
   readonly past: DistanceField;
   readonly rim: Label;

@@ -189,7 +189,7 @@ const turn = { thickness: 0.005, depth: [0.005, 0.012] } as const;
 
 /** Skin, or a layer of clothes that others lie on. */
 interface Layer {
-  /** As it is when the edges of clothes over it turn, and with its own edges. */
+  /** The surface below the edges of clothes that lie on it; `ends`: the same surface with its own edges. */
   readonly field: DistanceField;
   readonly ends: DistanceField;
   readonly label: Label;

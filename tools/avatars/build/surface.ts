@@ -226,7 +226,7 @@ function putOnSeam(positions: number[], v: number, value: PlaceValue, { near, on
   }
 }
 
-/** Of triangles with all corners near to a seam, the corner that is farthest: on a seam, they would have no area. */
+/** Returns the farthest corner of each triangle that is all near a seam: flattened onto it, it would have no area. */
 function farthestOfFlat({ indices }: Surface, far: (v: number) => number | null): ReadonlySet<number> {
   const kept = new Set<number>();
   for (let t = 0; t < indices.length; t += 3) {

@@ -191,7 +191,7 @@ describe('a dropped file', () => {
     expect(notices).toEqual([{ level: 'info', text: `robot.vrm is your avatar now. ${note}` }]);
   });
 
-  test('an opened avatar is shown again on later visits, until a body of ours is chosen', async () => {
+  test('an opened avatar is shown again on later visits, until a built-in body is chosen', async () => {
     const caches = cacheStorage();
     await files(caches).files.open(new File(['glTF'], 'robot.vrm'));
     const next = files(caches);
