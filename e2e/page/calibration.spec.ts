@@ -44,7 +44,7 @@ test('a typed height and arm span are used, remembered after a reload, and forgo
   await expect.poll(async () => (await probe(page)).calibration.eyeHeight).toBeCloseTo(before.eyeHeight, 3);
 });
 
-test('by hand: what no person measures is refused where it is typed', async ({ page }) => {
+test('by hand: what no person measures is refused where it is typed @full', async ({ page }) => {
   await openWithHeadset(page);
   const before = (await probe(page)).calibration;
   const height = page.getByRole('spinbutton', { name: 'Height in centimetres' });

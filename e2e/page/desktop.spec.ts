@@ -27,7 +27,7 @@ freshTest('a newcomer sees a moving body within seconds, without touching anythi
   await expect(page.getByRole('heading', { name: 'threepoint' })).toBeVisible();
 });
 
-freshTest('the note about a missing headset leaves by itself, and the picture grows', async ({ page }) => {
+freshTest('the note about a missing headset leaves by itself, and the picture grows @full', async ({ page }) => {
   await page.setViewportSize({ width: 640, height: 360 });
   await load(page, 'quality=low&estimator=ik&panel=off');
   const note = page.getByText('An emulated headset takes its place.');
@@ -39,7 +39,9 @@ freshTest('the note about a missing headset leaves by itself, and the picture gr
   await keepPicture(page, 'zoomed-page');
 });
 
-test('the keyboard opens the details of the methods for researchers, which are folded at first', async ({ page }) => {
+test('the keyboard opens the details of the methods for researchers, which are folded at first @full', async ({
+  page,
+}) => {
   await load(page, 'quality=low&estimator=ik&panel=on');
   await page.getByRole('tab', { name: 'Body' }).click();
   const precise = page.getByText('Six joints in closed form');

@@ -23,7 +23,7 @@ test('the button enters VR, and leaving brings the page back', async ({ page }) 
   await expect(page.getByRole('button', { name: 'Enter VR' })).toBeEnabled();
 });
 
-freshTest('an emulated session names the actor, and is taken over by mouse and keys', async ({ page }) => {
+freshTest('an emulated session names the actor, and is taken over by mouse and keys @full', async ({ page }) => {
   await open(page, 'quality=low&estimator=ik');
   await enterVr(page, { stepMs: null });
   const bar = page.getByRole('region', { name: 'Emulated headset' });
@@ -62,7 +62,7 @@ freshTest('an emulated session names the actor, and is taken over by mouse and k
   await expect.poll(async () => (await probe(page)).activity).toBe('desktop');
 });
 
-test('recentring moves the floor under the head, and the body goes on', async ({ page }) => {
+test('recentring moves the floor under the head, and the body goes on @full', async ({ page }) => {
   const headset = await openWithHeadset(page, 'estimator=ik');
   await enterVr(page);
   await headset.place({ head: { position: [0.6, 1.6, 0.4] } });

@@ -21,7 +21,7 @@ test('an FBX character is worn, with the hands on the controllers', async ({ pag
   await expectJointAt(page, 'leftHand', hand);
 });
 
-test('an FBX file of motion without a body is opened as motion capture', async ({ page }) => {
+test('an FBX file of motion without a body is opened as motion capture @full', async ({ page }) => {
   await openWithHeadset(page, 'estimator=ik');
   await openAvatarFile(page, 'wave.fbx', fbxText(builtFbx({ nameOf, turns: wave, bare: true })));
   await expect(card(page).getByRole('heading', { name: 'wave' })).toBeVisible();

@@ -71,7 +71,7 @@ test('both hands lost: the body stays whole, the head still moves', async ({ pag
   }
 });
 
-test('recentring moves the room, not the hands off the controllers', async ({ page }) => {
+test('recentring moves the room, not the hands off the controllers @full', async ({ page }) => {
   const headset = await openWithHeadset(page, 'estimator=learned');
   await enterVr(page);
   await headset.place(placements[1] as Placement);

@@ -166,7 +166,7 @@ test('a headset check measures the emulator’s known noise and losses and write
 });
 
 for (const stop of ['Escape', 'Stop'] as const) {
-  test(`a check in the emulated headset is stopped by ${stop} and shows what it measured`, async ({ page }) => {
+  test(`a check in the emulated headset is stopped by ${stop} and shows what it measured @full`, async ({ page }) => {
     await page.goto('/check?quality=low');
     await expect(page.getByText('It has no sensors')).toBeVisible({ timeout: 60_000 });
     await page.getByRole('button', { name: 'Start in the emulated headset' }).click();

@@ -62,7 +62,7 @@ test('a method chosen beside motion capture is remembered as one chosen in the p
   expect((await probe(page)).estimator).toBe('hands-only');
 });
 
-test('a link leads to the same second, method and body beside it', async ({ page }) => {
+test('a link leads to the same second, method and body beside it @full', async ({ page }) => {
   for (const [name, text] of Object.entries(leaping!.files))
     await page.route(`**/clips/${name}`, (route) => route.fulfill({ body: text, contentType: 'text/plain' }));
   await open(

@@ -19,7 +19,7 @@ async function enterRoom(page: Page, room: EmulatedRoom, query = '') {
 
 const passthrough = async (page: Page) => (await probe(page)).passthrough;
 
-test('the mirror stands on the real floor, is moved and anchored, and the studio is gone', async ({ page }) => {
+test('the mirror stands on the real floor, is moved and anchored, and the studio is gone @full', async ({ page }) => {
   const headset = await enterRoom(page, livingRoom);
   await expect(page.getByRole('button', { name: 'Exit AR' })).toBeVisible();
   await expect.poll(async () => (await passthrough(page))?.anchored).toBe(true);
@@ -105,7 +105,7 @@ test('the ball court stands in a hall, without sky, ground and hills @full', asy
   await keepPicture(page, 'passthrough-ball');
 });
 
-test('a page that enters VR loads nothing of passthrough', async ({ page }) => {
+test('a page that enters VR loads nothing of passthrough @full', async ({ page }) => {
   const loaded: string[] = [];
   page.on('request', (request) => loaded.push(request.url()));
   await openWithHeadset(page, 'estimator=ik&panel=off');

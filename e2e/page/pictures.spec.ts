@@ -28,8 +28,8 @@ test('pictures from behind and from the front, with each estimator @nightly', as
 });
 
 for (const estimator of estimators) {
-  const night = estimator === 'learned' ? '' : ' @nightly';
-  test(`${estimator}: a picture of the mirror in VR${night}`, async ({ page }) => {
+  const project = estimator === 'learned' ? '@full' : '@nightly';
+  test(`${estimator}: a picture of the mirror in VR ${project}`, async ({ page }) => {
     const headset = await openWithHeadset(page, `estimator=${estimator}&panel=off&quality=high`);
     await enterVr(page);
     // Close to the mirror, which hangs 1.8 m away.

@@ -88,7 +88,7 @@ test.describe('on a phone', () => {
 test.describe('on a turned phone', () => {
   test.use({ ...pixel, viewport: { width: 390, height: 844 } });
 
-  test('an open motion does not widen the page when the phone is turned and turned back', async ({ page }) => {
+  test('an open motion does not widen the page when the phone is turned and turned back @full', async ({ page }) => {
     const motionFiles = Object.entries(goldenMocap[0]!.files).map(([name, text]) => ({
       name,
       mimeType: 'text/plain',

@@ -63,7 +63,9 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
   return { state, thrown };
 }
 
-test('the ball game is finished with one hand too; each person throws and catches, seated too', () => {
+test('the ball game is finished with one hand too; each person throws and catches, seated too', {
+  tags: ['full'],
+}, () => {
   let finished = 0;
   let played = 0;
   const figures: Record<string, string> = {};

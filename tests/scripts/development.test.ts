@@ -36,7 +36,7 @@ test('npm run dev serves the page, and passes rooms with their WebSockets to the
   );
 });
 
-test('a page of the development server may use rooms and relay; other sites’ may not', async () => {
+test('a page of the development server may use rooms and relay; other sites’ may not', { tags: ['full'] }, async () => {
   const server = await startDevelopment();
   for (const origin of [server, 'https://evil.example']) {
     const headers = { origin, 'content-type': 'application/json' };

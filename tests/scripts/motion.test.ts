@@ -47,7 +47,7 @@ describe('npm run tool -- motion', () => {
     expect(readFileSync(join(folder, `mine-${estimator}.${to}`)).length).toBeGreaterThan(20_000);
   });
 
-  test('writes motion capture in FBX as it would be recorded, on an avatar in FBX', async () => {
+  test('writes motion capture in FBX as it would be recorded, on an avatar in FBX', { tags: ['full'] }, async () => {
     const every = (angle: (frame: number) => number) =>
       Array.from({ length: 60 }, (_, frame) => [0, 0, angle(frame)] as const);
     const nameOf = mixamo('mixamorig:');

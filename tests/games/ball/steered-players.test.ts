@@ -163,7 +163,7 @@ describe.each([0, 1])('with a mouse on seat %i', (seat) => {
 });
 
 describe('with a mouse at the basket', () => {
-  test('a player who points at where the balls come down catches most of them', () => {
+  test('a player who points at where the balls come down catches most of them', { tags: ['full'] }, () => {
     const home = vec3(0, 1, -0.5);
     const match = playing(
       2,

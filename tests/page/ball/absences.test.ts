@@ -147,7 +147,9 @@ async function playWith(plan: GroupPlan, absences: readonly RandomAbsence[]): Pr
   return group;
 }
 
-test('random absences of three leave rows that state what was played and what was not', async () => {
+test('random absences of three leave rows that state what was played and what was not', {
+  tags: ['full'],
+}, async () => {
   const property = fc.asyncProperty(fc.array(randomAbsence, { minLength: 1, maxLength: 4 }), async (absences) => {
     const plan = planWhere('repeat');
     const group = await playWith(plan, absences);

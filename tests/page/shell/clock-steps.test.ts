@@ -111,7 +111,7 @@ function goesOn(step: number): void {
     });
   });
 
-  test('a ball game with two built-in players goes on, theirs included', () => {
+  test('a ball game with two built-in players goes on, theirs included', { tags: ['full'] }, () => {
     const host = createBallLoopbackHost({ seed: 5, ball: { seconds: 60 } });
     const play = ballPage(host, { bots: () => true, readyByItself: () => true, seed: 3 });
     const shown = new Map<number, number>();

@@ -163,7 +163,7 @@ test('a flood costs its sender the packets beyond three times the usual rate, an
   expect([...reasons]).toEqual(['flood: it sends too many packets']);
 });
 
-test('a page hidden for an hour keeps a few packets and draws the newest when shown', () => {
+test('a page hidden for an hour keeps a few packets and draws the newest when shown', { tags: ['full'] }, () => {
   const { until, sent } = sending();
   until(8000);
   const others = new RemotePoses();

@@ -100,7 +100,7 @@ describe('npm run tool -- study:check', () => {
     expect(status).toBe(0);
   });
 
-  test('names those without a neighbour and those who may stop, and where they meet this', () => {
+  test('names those without a neighbour and those who may stop, and where they meet this', { tags: ['full'] }, () => {
     const file = join(directoryWith(), 'mine.json');
     const remote = { contact: 'Call 555 0100.', freeSpace: 2.5 };
     const askToStop = [
@@ -134,7 +134,7 @@ describe('npm run tool -- study:check', () => {
     expect(status).toBe(1);
   });
 
-  test('says that a file or a participant is not there', () => {
+  test('says that a file or a participant is not there', { tags: ['full'] }, () => {
     expect(check('nowhere.json').stderr).toContain('there is no file');
     expect(check('public/studies/paper.json', '--participant', 'P99').stderr).toContain('P01 to P15, not P99');
     expect(check().stderr).toContain('one plan is needed');

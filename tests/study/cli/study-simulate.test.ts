@@ -19,7 +19,7 @@ const plan = simulatedPlan(paperPlan());
 describe('a simulated study', () => {
   const simulated = simulatedRecords(plan);
 
-  test('is the same for the same seed, and another for another', () => {
+  test('is the same for the same seed, and another for another', { tags: ['full'] }, () => {
     expect(simulatedRecords(plan)).toEqual(simulated);
     expect(simulatedRecords(plan, noEffects, 2)).not.toEqual(simulated);
   });
@@ -42,7 +42,7 @@ describe('a simulated study', () => {
     for (const { score, maximum } of valid) expect(score).toBeLessThanOrEqual(maximum);
   });
 
-  test('retries what was interrupted and discounts what was voided, as people do', () => {
+  test('retries what was interrupted and discounts what was voided, as people do', { tags: ['full'] }, () => {
     const records = simulatedRecords({ ...plan, participants: 60 });
     const types = new Set(records.flatMap((record) => (record.kind === 'event' ? [record.body.type] : [])));
     expect([...types].toSorted()).toEqual(['finished', 'interrupted', 'void-block']);
@@ -94,7 +94,7 @@ describe('npm run tool -- study:simulate', () => {
       encoding: 'utf8',
     });
 
-  test('writes exports that say SIMULATED, and reads back as one study', () => {
+  test('writes exports that say SIMULATED, and reads back as one study', { tags: ['full'] }, () => {
     const out = join(directoryWith(), 'new');
     const { status, stdout, stderr } = simulateInto(out, '--participants', '6');
     expect(stderr).toBe('');

@@ -75,7 +75,9 @@ function expectOwn(records: readonly StoredRecord[], participant: string, schedu
   }
 }
 
-test('three participants under simultaneous commands keep results apart, and each voided block is recorded once', async () => {
+test('three participants under simultaneous commands keep results apart, and each voided block is recorded once', {
+  tags: ['full'],
+}, async () => {
   const server = await studyServer();
   const random = randomSource(2460, 'three participants');
   const tabs = new Map<string, Tab>();

@@ -46,7 +46,9 @@ test('the outcome gives a round’s second 0 and every pause by the device’s c
   expect(pause?.seconds).toBeCloseTo(20, 1);
 });
 
-test('a round too long for the server keeps its first frames, and the outcome counts them', async () => {
+test('a round too long for the server keeps its first frames, and the outcome counts them', {
+  tags: ['full'],
+}, async () => {
   const game = new OneShotGame();
   const place = { participant: 'P01', members: [], seconds: 600, afterAbsence: 'repeat' } as const;
   await game.prepare({ ...place, seat: () => Promise.reject() });

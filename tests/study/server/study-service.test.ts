@@ -37,7 +37,9 @@ function begunStudy() {
   return { directory, file };
 }
 
-test('a failed deletion after the retention date ends no server: it is logged and repeated hourly', async () => {
+test('a failed deletion after the retention date ends no server: it is logged and repeated hourly', {
+  tags: ['full'],
+}, async () => {
   vi.useFakeTimers({ toFake: ['setInterval', 'clearInterval'] });
   onTestFinished(() => {
     vi.useRealTimers();

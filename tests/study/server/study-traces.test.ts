@@ -120,7 +120,9 @@ const tracesOf = (participant: string, { token, code }: { readonly token: string
   gzipSync(recordingOf(participant)).subarray(4000, 4032),
 ];
 
-test('a deleted participant leaves no byte in data, logs and files, and a code in exports', async () => {
+test('a deleted participant leaves no byte in data, logs and files, and a code in exports', {
+  tags: ['full'],
+}, async () => {
   const server = await serve();
   const { ask, asExperimenter, directory } = server;
   const searched = () => [...filesIn(directory), { name: 'log', bytes: Buffer.from(server.printed()) }];

@@ -82,7 +82,7 @@ describe('a plan that has participants', () => {
     expect(token).toMatch(/./);
   });
 
-  test('has results and exports of each version apart', async () => {
+  test('has results and exports of each version apart', { tags: ['full'] }, async () => {
     const { change, take, see, ask } = await begunStudy();
     await change(asksMore, true);
     await take('P02', asksMore);

@@ -55,7 +55,7 @@ describe('a body at rest', () => {
     for (const name of moving) expect(reach(tracks[name]), name).toBeLessThan(1e-6);
   });
 
-  test('breathes and shifts its weight by millimetres, with head, hands and feet in place', () => {
+  test('breathes and shifts its weight by millimetres, with head, hands and feet in place', { tags: ['full'] }, () => {
     avatar.setIdleMotion(true);
     const unchanged = copyAvatarPose(pose);
     const tracks = hold(avatar, 5, 40);
@@ -69,7 +69,7 @@ describe('a body at rest', () => {
     expect(pose).toEqual(unchanged);
   });
 
-  test('raises both shoulders about fifteen times a minute', () => {
+  test('raises both shoulders about fifteen times a minute', { tags: ['full'] }, () => {
     const { leftUpperArm } = hold(avatar, 45, 40);
     const height = leftUpperArm.map(({ y }) => y);
     const middle = (Math.min(...height) + Math.max(...height)) / 2;

@@ -69,7 +69,9 @@ describe('legs', () => {
     });
   });
 
-  test('keep knees and ankles over the floor while a person walks, turns, squats and kneels', () => {
+  test('keep knees and ankles over the floor while a person walks, turns, squats and kneels', {
+    tags: ['full'],
+  }, () => {
     const number = (min: number, max: number) => fc.double({ min, max, noNaN: true });
     const goal = fc.record({
       ...{ x: number(-1, 1), z: number(-1, 1), yaw: number(-3, 3) },

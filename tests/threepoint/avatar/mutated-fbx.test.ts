@@ -1,3 +1,4 @@
+// @module-tag full
 import { expect, onTestFinished, test, vi } from 'vitest';
 import { untrustedAvatarLimits } from '../../../src/threepoint/avatar/file/avatar-limits';
 import { checkAvatar } from '../../../src/threepoint/avatar/file/check-avatar';

@@ -30,7 +30,7 @@ test('a glass whose corner alone reaches into the picture is seen', () => {
   expect(seenPart(camera, at(halfPicture + width / 2 + 0.01), width, height)).toBeNull();
 });
 
-test('every visible point of a thousand glasses lies in the part that is seen', () => {
+test('every visible point of a thousand glasses lies in the part that is seen', { tags: ['full'] }, () => {
   let random = { seed: 20261122 };
   const draw = (low: number, high: number): number => {
     const { value, state } = nextRandom(random);

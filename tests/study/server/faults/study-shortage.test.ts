@@ -90,7 +90,7 @@ test('a limit of files reached by strangers leaves studies writable and refuses 
   reportFigures('study-shortage', { '200 connections, 100 files': `writes 201, an export ${exported.status}` });
 });
 
-test('a disk that fills refuses to store and to delete, but not to export', async () => {
+test('a disk that fills refuses to store and to delete, but not to export', { tags: ['full'] }, async () => {
   const { directory, file, code } = studyWith(100);
   // The limit is the size of the database in blocks of 1024 bytes. Further writes fail, as on a full disk.
   const through = ['bash', '-c', `trap '' XFSZ; ulimit -f 48; exec "$0" "$@"`];

@@ -313,7 +313,7 @@ describe('a hand that comes back far from where it rests', () => {
     distance(now, before) -
     Math.abs(turning / 60) * (0.2 + Math.max(Math.hypot(now.x, now.z), Math.hypot(before.x, before.z)));
 
-  test('takes no step of its own over 5 cm while lost, however the person turns', () => {
+  test('takes no step of its own over 5 cm while lost, however the person turns', { tags: ['full'] }, () => {
     fc.assert(
       fc.property(where, evenly(-Math.PI, Math.PI), evenly(-6, 6), (from, yaw, turning) => {
         const at = turningPerson(yaw, turning);

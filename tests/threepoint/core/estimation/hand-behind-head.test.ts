@@ -1,3 +1,4 @@
+// @module-tag full
 import { type Calibration, createEstimator, type TrackingFrame } from 'threepoint/core';
 import { distance, fromAxisAngle, type Side, sides, up, vec3 } from 'threepoint/math';
 import { expect, test } from 'vitest';

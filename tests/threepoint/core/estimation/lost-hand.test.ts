@@ -89,7 +89,7 @@ describe('a hand that is lost', () => {
     seconds: evenly(0.12, 1.5),
   });
 
-  test('comes back without a snap of its elbow, even barely in reach or at the shoulder', () => {
+  test('comes back without a snap of its elbow, even barely in reach or at the shoulder', { tags: ['full'] }, () => {
     fc.assert(
       fc.property(reachFromShoulder, ({ yaw, pitch, share, seconds }) => {
         const estimator = createEstimator('ik', calibration);
@@ -116,7 +116,7 @@ describe('a hand that is lost', () => {
     );
   });
 
-  test('is back for good once it is back: a whirling body leaves it on its controller', () => {
+  test('is back for good once it is back: a whirling body leaves it on its controller', { tags: ['full'] }, () => {
     const whirl = fc.record({
       metres: evenly(0.05, 0.12),
       rate: evenly(8, 16),
@@ -145,7 +145,9 @@ describe('a hand that is lost', () => {
     );
   });
 
-  test('is on its controller 0.9 s after its return, however wildly elbow and trunk are estimated', () => {
+  test('is on its controller 0.9 s after its return, however wildly elbow and trunk are estimated', {
+    tags: ['full'],
+  }, () => {
     const upright = bodyOf(standing(calibration, hip.left, ahead.right));
     const { upper, lower } = armBones(skeleton);
     const place = fc.record({ x: evenly(-0.1, 0.35), y: evenly(1.1, 1.5), z: evenly(-0.35, -0.15) });

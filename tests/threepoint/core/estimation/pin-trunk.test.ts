@@ -248,7 +248,9 @@ describe('a pinned trunk', () => {
     );
   });
 
-  test('moves no further than its trackers do, however they contradict each other and the head', () => {
+  test('moves no further than its trackers do, however they contradict each other and the head', {
+    tags: ['full'],
+  }, () => {
     // Each joint moves at most twice as far as a tracker or the head, and at 1.5 m/s besides: a trunk that is straight
     // or folded has joints that have to get round.
     const [factor, speed] = [2, 1.5];

@@ -42,7 +42,7 @@ function ledTo(points: TrackingFrame, motion: number, estimator: PoseEstimator):
 }
 
 describe.each(['ik', 'learned'] as const)('bodies of one calibration that come to the same points: %s', (name) => {
-  test('have the same elbows after ten seconds of different movements', () => {
+  test('have the same elbows after ten seconds of different movements', { tags: ['full'] }, () => {
     const random = createRandom(seed);
     const network = name === 'learned' ? openPlainModel() : null;
     const apart = Array.from({ length: cases(3) }, () => {

@@ -181,7 +181,9 @@ function expectSlow(drawn: readonly Joints[]): void {
 describe.each(fitted)('by $label', (subject) => {
   const { create, runs } = openSubject(subject);
 
-  test('a still person is still after two seconds, with hands within reach on their controllers', async () => {
+  test('a still person is still after two seconds, with hands within reach on their controllers', {
+    tags: ['full'],
+  }, async () => {
     await fc.assert(
       fc.asyncProperty(stillPerson, async (person) => {
         const { calibration, frame } = person;

@@ -1,3 +1,4 @@
+// @module-tag full
 import { expect, test } from 'vitest';
 import { readGlbChunks } from '../../../../src/threepoint/avatar/file/glb-chunks';
 import { createRandom } from '../../../../src/threepoint/core/math/random';

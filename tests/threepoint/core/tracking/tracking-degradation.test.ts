@@ -208,7 +208,7 @@ describe('dropouts', () => {
     return lengths;
   };
 
-  test('take each hand as often as stated, for as long, and the head never', () => {
+  test('take each hand as often as stated, for as long, and the head never', { tags: ['full'] }, () => {
     const minutes = 40;
     const frames = followed({ dropouts }, 60 * minutes, 30);
     expect(frames.every(({ head }) => head !== null)).toBe(true);
