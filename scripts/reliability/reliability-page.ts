@@ -58,8 +58,8 @@ export function reliabilityPage(register: Register): string {
   return `# Reliability
 
 Each row is a fault, a promise or an attack, as [reliability.json](reliability.json) lists them with every figure; tests
-report the figures by \`reportFigures('NAME', …)\`. \`npm run tool -- reliability\` runs these tests and writes this page:
-\`--unit\` without a browser, \`--long\` with 20 minutes of play. Durations are those of two cores with software rendering.
+report the figures by \`reportFigures('NAME', …)\`. \`npm run tool -- reliability\` runs these tests and writes this page.
+Durations are those of two cores with software rendering.
 
 ${Object.entries(register)
   .map(([title, part]) => table(title, part))
