@@ -4,10 +4,9 @@ import type { RowName } from '../../tests/reliability/report-figures';
 interface Row {
   /** The fault or attack on the page, the headset or the server. */
   readonly inject: string;
-  /** The result that a user, player or client must see. */
-  readonly sees: string;
-  readonly target: string;
-  /** The figures that the page shows, by name. By default these are the first two. */
+  /** The result that a user, player or client must see, with its limit. */
+  readonly promise: string;
+  /** The figures that the page shows, by name. By default this is the first. */
   readonly shows?: readonly string[];
   /** The step to check by hand with a headset, with its result. */
   readonly manual?: string;
@@ -44,12 +43,12 @@ const formatted = (value: string | number): string =>
 const cell = (text: string): string => text.replaceAll('|', '\\|');
 
 function table(title: string, part: Readonly<Record<string, Row>>): string {
-  const lines = Object.values(part).map(({ inject, sees, target, figures = {}, shows }) => {
-    const shown = shows ?? Object.keys(figures).slice(0, 2);
+  const lines = Object.values(part).map(({ inject, promise, figures = {}, shows }) => {
+    const shown = shows ?? Object.keys(figures).slice(0, 1);
     const measured = shown.map((what) => `${what}: ${formatted(figures[what] ?? 'not measured')}`);
-    return `| ${[inject, `${sees}. *${target}*`, measured.join('; ')].map(cell).join(' | ')} |`;
+    return `| ${[inject, promise, measured.join('; ')].map(cell).join(' | ')} |`;
   });
-  return [`## ${title}\n`, '| fault | result and *target* | measured |', '|---|---|---|', ...lines].join('\n');
+  return [`## ${title}\n`, '| fault | promise | measured |', '|---|---|---|', ...lines].join('\n');
 }
 
 /** Returns the text of docs/reliability.md. */
@@ -58,8 +57,8 @@ export function reliabilityPage(register: Register): string {
   return `# Reliability
 
 Each row is a fault, a promise or an attack, as [reliability.json](reliability.json) lists them with every figure; tests
-report the figures by \`reportFigures('NAME', …)\`. \`npm run tool -- reliability\` runs these tests and writes this page:
-\`--unit\` without a browser, \`--long\` with 20 minutes of play. Durations are those of two cores with software rendering.
+report the figures by \`reportFigures('NAME', …)\`. \`npm run tool -- reliability\` runs these tests and writes this page.
+Its figures are of nightly runs; by day tests have fewer cases. Durations are of two cores that render in software.
 
 ${Object.entries(register)
   .map(([title, part]) => table(title, part))

@@ -61,7 +61,7 @@ function rowsOf(title: string): (readonly [name: string, outcomes: string])[] {
   const [, list = ''] = page.split(`### ${title}\n`);
   let outcomes = '';
   return (list.split('\n#')[0] ?? '').split('\n').flatMap((line) => {
-    const name = /^- `([^`]+)`: /.exec(line)?.[1];
+    const name = /^- `([^`]+)`/.exec(line)?.[1];
     if (name) return [[name, outcomes] as const];
     if (line) outcomes = line;
     return [];
