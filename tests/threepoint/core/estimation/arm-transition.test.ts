@@ -191,6 +191,23 @@ describe('an arm whose hand has jumped', () => {
     );
   });
 
+  test('moves its elbow no faster for a hand that moves about a still elbow', () => {
+    fc.assert(
+      fc.property(arm, arm, evenly(-12, 12), (from, wanted, turning) => {
+        const goalAt = (time: number): ArmDirections => ({
+          ...wanted,
+          forearm: rotate(fromAxisAngle(wanted.hinge, turning * time), wanted.forearm),
+        });
+        const { arms, duration } = drawn(from, goalAt, 60, 2.5);
+        expect(duration).toBeLessThanOrEqual(0.9 + 1e-9);
+        const fastest = fastestOver(pathOf(arms));
+        for (let i = 1; i < arms.length; i++)
+          expect(distance(elbowOf(arms[i]!), elbowOf(arms[i - 1]!))).toBeLessThan(fastest / 60 + 1e-6);
+      }),
+      { seed },
+    );
+  });
+
   test('keeps bones and hinge unit vectors, and the hinge across the upper arm', () => {
     fc.assert(
       fc.property(arm, arm, (from, wanted) => {

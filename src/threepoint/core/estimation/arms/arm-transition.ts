@@ -19,8 +19,8 @@ import { advanceArc, alongArc, type DirectionArc, directionArc, makeDirectionArc
 /** The shortest transition [s]. */
 const shortestSeconds = 0.2;
 /**
- * The highest speed of elbow and wrist [m/s] in addition to the hand's own motion: 3.75 cm in a frame at 60 Hz. An arm
- * that would take longer than `hurrySeconds` moves evenly and as fast as necessary.
+ * The highest speed of elbow and wrist [m/s] in addition to the motion of their goals: 3.75 cm in a frame at 60 Hz. An
+ * arm that would take longer than `hurrySeconds` moves evenly and as fast as necessary.
  */
 const fastest = 2.25;
 /** The fraction of the shortest duration that acceleration and deceleration take. */
@@ -75,12 +75,16 @@ export interface ArmGoal extends ArmDirections {
 export interface ArmTransition {
   /** The time since the jump [s]; NaN: there is no transition. */
   age: number;
-  /** The current speed in addition to the hand's own motion [m/s]. */
+  /** The current speed in addition to the motion of the goals [m/s]. */
   speed: number;
   /** The longest path of elbow or wrist since the jump [m], which limits their speed. */
   longestPath: number;
-  /** The hand's target, and the drawn elbow and wrist, in the previous frame [m]. */
-  readonly hand: MutableVec3;
+  /** The distances [m] that the goals of elbow and wrist move in this frame. */
+  elbowMotion: number;
+  wristMotion: number;
+  /** The goals of elbow and wrist, and the drawn elbow and wrist, in the previous frame [m]. */
+  readonly elbowGoal: MutableVec3;
+  readonly wristGoal: MutableVec3;
   readonly elbow: MutableVec3;
   readonly wrist: MutableVec3;
   readonly upperArm: DirectionArc;
@@ -91,7 +95,10 @@ export const makeArmTransition = (): ArmTransition => ({
   age: Number.NaN,
   speed: Number.NaN,
   longestPath: Number.NaN,
-  hand: vec3(0, 0, 0),
+  elbowMotion: Number.NaN,
+  wristMotion: Number.NaN,
+  elbowGoal: vec3(0, 0, 0),
+  wristGoal: vec3(0, 0, 0),
   elbow: vec3(0, 0, 0),
   wrist: vec3(0, 0, 0),
   upperArm: makeDirectionArc(),
@@ -131,22 +138,24 @@ function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: Arm
   return metres;
 }
 
-/** Returns the larger distance [m] of elbow and wrist from their drawn positions, at a fraction of the arcs. */
-function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, fraction: number): number {
+/** Returns how far [m] elbow or wrist moves beyond its goal, whichever is more, at a fraction of the arcs. */
+function excessAt(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, fraction: number): number {
   placeAt(transition, drawn, wanted, fraction);
-  return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
+  return Math.max(
+    distance(elbow, transition.elbow) - transition.elbowMotion,
+    distance(wrist, transition.wrist) - transition.wristMotion,
+  );
 }
 
 /**
- * Returns the fraction of the arcs up to which neither elbow nor wrist is further than this [m] from its drawn
- * position. If shoulder motion alone exceeds the limit, returns the fraction with the smallest distance. Sampled in
- * steps of 1/pathSteps.
+ * Returns the fraction of the arcs up to which elbow and wrist move by no more than this [m] beyond their goals. If
+ * shoulder motion alone exceeds the limit, returns the fraction with the least. Sampled in steps of 1/pathSteps.
  */
 function progressWithin(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal, metres: number): number {
   let nearest = 0;
-  let least = distanceAt(transition, drawn, wanted, 0);
+  let least = excessAt(transition, drawn, wanted, 0);
   for (let step = 1; step <= pathSteps && (least > metres || nearest === step - 1); step++) {
-    const off = distanceAt(transition, drawn, wanted, step / pathSteps);
+    const off = excessAt(transition, drawn, wanted, step / pathSteps);
     if (off <= metres || off < least) {
       nearest = step;
       least = off;
@@ -158,7 +167,7 @@ function progressWithin(transition: ArmTransition, drawn: ArmDirections, wanted:
   let tooFar = (nearest + 1) / pathSteps;
   for (let i = 0; i < fractionHalvings; i++) {
     const middle = (fraction + tooFar) / 2;
-    if (distanceAt(transition, drawn, wanted, middle) > metres) tooFar = middle;
+    if (excessAt(transition, drawn, wanted, middle) > metres) tooFar = middle;
     else fraction = middle;
   }
   return fraction;
@@ -173,20 +182,24 @@ export function startTransition(transition: ArmTransition, drawn: ArmDirections,
   storeDrawn(transition, drawn, wanted);
 }
 
-/** Stores the hand's target and the drawn elbow and wrist of this frame. */
+/** Stores the goals and the drawn positions of elbow and wrist in this frame. */
 function storeDrawn(transition: ArmTransition, drawn: ArmDirections, wanted: ArmGoal): void {
-  copyVec3(wanted.hand, transition.hand);
+  addScaled(wanted.shoulder, wanted.upperArm, wanted.bones.upper, transition.elbowGoal);
+  copyVec3(wanted.hand, transition.wristGoal);
   placeJoints(drawn.upperArm, drawn.forearm, wanted);
   copyVec3(elbow, transition.elbow);
   copyVec3(wrist, transition.wrist);
 }
 
-/**
- * Returns the path [m] of elbow and wrist in this frame: even acceleration and deceleration, plus the hand's own
- * motion.
- */
+/** Stores how far the goals move in this frame. An elbow whose estimate alone moves has no motion of its own. */
+function storeMotion(transition: ArmTransition, { shoulder, upperArm, bones, hand }: ArmGoal): void {
+  transition.wristMotion = distance(hand, transition.wristGoal);
+  const elbowMotion = distance(addScaled(shoulder, upperArm, bones.upper, elbow), transition.elbowGoal);
+  transition.elbowMotion = Math.min(elbowMotion, transition.wristMotion);
+}
+
+/** Returns the path [m] of elbow and wrist in this frame beyond their goals': even acceleration and deceleration. */
 function stepOf(transition: ArmTransition, toGo: number, wanted: ArmGoal, deltaSeconds: number): number {
-  const { hand } = transition;
   const seconds = Math.max(shortestSeconds, wanted.minDuration);
   transition.longestPath = Math.max(transition.longestPath, toGo);
   const needed = transition.longestPath / (hurrySeconds - shortestSeconds * ramp);
@@ -194,7 +207,7 @@ function stepOf(transition: ArmTransition, toGo: number, wanted: ArmGoal, deltaS
   const acceleration = topSpeed / (seconds * ramp);
   const slowing = Math.sqrt(2 * acceleration * toGo);
   transition.speed = Math.min(transition.speed + acceleration * deltaSeconds, topSpeed, slowing);
-  return distance(wanted.hand, hand) + transition.speed * deltaSeconds;
+  return transition.speed * deltaSeconds;
 }
 
 /** Advances the transition by a frame: `drawn` contains the arm of the previous frame and receives that of this one. */
@@ -213,6 +226,7 @@ export function followTransition(
   transition.age += passed;
   retargetArc(upperArm, drawn.upperArm, wanted.upperArm);
   retargetArc(forearm, drawn.forearm, wanted.forearm);
+  storeMotion(transition, wanted);
   const toGo = pathLength(transition, drawn, wanted);
   const step = stepOf(transition, toGo, wanted, passed);
   // Minimum fraction per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus
