@@ -255,7 +255,9 @@ describe('a body', () => {
     expect(body.calibration).toEqual({ ...calibration, gripOffsets });
     body.calibrate('auto');
     expect(body.userCalibration.gripOffsets).toEqual(gripOffsets);
-    expect(() => body.setGripOffsets({ any: { left: { roll: 2 } } })).toThrow('The offset of any exceeds 0.10 m');
+    expect(() => body.setGripOffsets({ any: { left: { roll: 2 } } })).toThrow(
+      'The offset of any is not { left, right } of at most 0.1 m and 1 rad',
+    );
     body.setGripOffsets({});
     expect(body.userCalibration.gripOffsets).toEqual({});
   });

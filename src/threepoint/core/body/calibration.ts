@@ -27,13 +27,8 @@ export type GripOffset = { readonly [Part in (typeof handleFitParts)[number]]?: 
 /** The corrections by device, which is the first known name of an input source's profiles, and by hand. */
 export type GripOffsets = Readonly<Record<string, { readonly [Hand in Side]?: GripOffset | undefined }>>;
 
-const [largestShift, largestTurn] = [0.1, Math.PI / 3];
-
 /** The largest corrections [m, rad]. */
-export const largestGripOffset: HandleFit = {
-  ...{ ahead: largestShift, below: largestShift, thumbward: largestShift },
-  ...{ lean: largestTurn, pitch: largestTurn, roll: largestTurn },
-};
+export const largestGripOffset: HandleFit = { ahead: 0.1, below: 0.1, thumbward: 0.1, lean: 1, pitch: 1, roll: 1 };
 
 /** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
@@ -204,14 +199,12 @@ function tiltProblem({ gazePitch = 0, handTilts }: Calibration): string | null {
 /** Returns why the offsets of grips are implausible; null: they are plausible. */
 function gripProblem({ gripOffsets = {} }: Calibration): string | null {
   for (const [device, hands] of Object.entries(gripOffsets)) {
-    for (const [hand, offset] of Object.entries<GripOffset | undefined>(hands)) {
-      if (!sides.includes(hand as Side)) {
-        return `The offset of ${device} has no “${hand}”. Give { left, right }, each of them { ahead, lean, … }.`;
-      }
-      for (const part of handleFitParts) {
-        if (Math.abs(offset?.[part] ?? 0) <= largestGripOffset[part]) continue;
-        return `The offset of ${device} exceeds ${metres(largestShift)} or ${largestTurn.toFixed(2)} rad.`;
-      }
+    for (const [hand, offset = {}] of Object.entries<GripOffset | undefined>(hands)) {
+      const fits = Object.entries(offset).every(
+        ([part, value = 0]) => Math.abs(value) <= largestGripOffset[part as keyof HandleFit],
+      );
+      if (fits && sides.includes(hand as Side)) continue;
+      return `The offset of ${device} is not { left, right } of at most 0.1 m and 1 rad.`;
     }
   }
   return null;
