@@ -87,7 +87,9 @@ async function followsTheWearer(page: Page, address: string): Promise<EmulatedHe
   await handsOnControllers(page, headset);
   for (const [index, name] of followers.entries()) {
     await expect
-      .poll(async () => 100 * distance(await ownJoint(page, name), before[index]!), { message: `${name} moves by [cm]` })
+      .poll(async () => 100 * distance(await ownJoint(page, name), before[index]!), {
+        message: `${name} moves by [cm]`,
+      })
       .toBeGreaterThan(8);
   }
   return headset;
@@ -163,6 +165,16 @@ test.describe('examples of the package @full', () => {
       await server.close();
     });
   }
+
+  test('aframe: A-Frame 1.7 with its own three.js draws the body', async ({ page }) => {
+    test.setTimeout(300_000);
+    const versions = { aframe: '1.7.1', three: 'npm:super-three@0.173.5' };
+    const server = await serveStatic(join(await buildExample('aframe', folder, versions), 'dist'));
+    const complaints = complaintsOf(page);
+    await drawsTheWearer(page, server.address);
+    expect(complaints).toEqual([]);
+    await server.close();
+  });
 
   for (const bundler of ['vite', 'webpack', 'rollup', 'esbuild', 'parcel']) {
     test(`bundlers: a page by ${bundler} has the learned network`, async ({ page }) => {
