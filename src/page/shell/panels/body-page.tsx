@@ -2,7 +2,7 @@ import { useRef } from 'preact/hooks';
 import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
 import { Button, Details, Group, Toggle, TypedInput } from 'threepoint-ui/controls';
 import { estimatorTexts, listedEstimators } from '../session/estimator-texts';
-import { type GripControl, type GripState, gripHands, handLabels } from './grip-control';
+import { type GripControl, type GripState, gripHands, gripKinds, handLabels } from './grip-control';
 import type { PanelPageProps } from './panel-actions';
 
 const methodDetails = Object.values(estimatorTexts).map(({ label, details }) => [label, details] as const);
@@ -126,12 +126,19 @@ function Grip({ grip, control }: { readonly grip: GripState; readonly control: G
           />
         ))}
       </Group>
-      {grip.rows.map((row) => (
-        <Group label={`${row.kind}: ${row.less}, ${row.more}`} class="steps">
-          <Button label={row.less} disabled={row.atLeast} onClick={() => control.step(row, -1)} />
-          <output>{row.value}</output>
-          <Button label={row.more} disabled={row.atMost} onClick={() => control.step(row, 1)} />
-        </Group>
+      {(['Move', 'Turn'] as const).map((kind) => (
+        <>
+          <small class="hint">{gripKinds[kind]}</small>
+          {grip.rows
+            .filter((row) => row.kind === kind)
+            .map((row) => (
+              <Group label={`${kind}: ${row.less}, ${row.more}`} class="steps">
+                <Button label={row.less} disabled={row.atLeast} onClick={() => control.step(row, -1)} />
+                <output>{row.value}</output>
+                <Button label={row.more} disabled={row.atMost} onClick={() => control.step(row, 1)} />
+              </Group>
+            ))}
+        </>
       ))}
       <Button label="Reset" aria-label="Reset grip" onClick={() => control.reset()} />
     </section>

@@ -33,6 +33,9 @@ const gripSteps: readonly GripStep[] = [
   { part: 'roll', kind: 'Turn', less: 'Palm up', more: 'Palm down', change: turn },
 ];
 
+/** The headings of the two kinds of steps. */
+export const gripKinds = { Move: 'Move the drawn hands', Turn: 'Turn the drawn hands' } as const;
+
 /** A row of the controls: a step, and its sum so far. */
 export interface GripRow extends GripStep {
   /** The sum in words; that of the left hand and that of the right one, if they differ. */
@@ -54,10 +57,11 @@ const stepsOf = (offset: GripOffset | undefined, { part, change }: GripStep): nu
 
 const mostSteps = ({ part, change }: GripStep): number => Math.round(largestGripOffset[part] / Math.abs(change));
 
-function inWords(steps: number, { kind }: GripStep): string {
-  const sign = steps === 0 ? '' : steps > 0 ? '+' : '−';
-  const size = Math.abs(steps);
-  return kind === 'Move' ? `${sign}${millimetres * size} mm` : `${sign}${degrees * size}°`;
+const signed = (value: number): string => `${value > 0 ? '+' : value < 0 ? '−' : ''}${Math.abs(value)}`;
+
+function inWords(steps: readonly number[], { kind }: GripStep): string {
+  const [size, unit] = kind === 'Move' ? [millimetres, ' mm'] : [degrees, '°'];
+  return `${steps.map((count) => signed(size * count)).join(' / ')}${unit}`;
 }
 
 /** The parts of profile names whose spelling differs from a capitalised word. */
@@ -97,7 +101,7 @@ export class GripControl {
         const steps = offsets.map((offset) => stepsOf(offset, step));
         return {
           ...step,
-          value: distinct(steps.map((count) => inWords(count, step))).join(' / '),
+          value: inWords(distinct(steps), step),
           atLeast: steps.every((count) => count <= -mostSteps(step)),
           atMost: steps.every((count) => count >= mostSteps(step)),
         };

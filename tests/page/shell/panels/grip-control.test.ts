@@ -56,7 +56,7 @@ test('steps in the headset’s menu move both hands, or one, and are stored with
   expect(offsets.left).toEqual(left);
   expect(offsets.right!.below).toBeCloseTo(-0.005, 9);
   press('both');
-  expect(user(quest, storage).values).toEqual(['+10 mm', '0 mm / −5 mm', '0 mm', '0°', '0°', '−3°']);
+  expect(user(quest, storage).values).toEqual(['+10 mm', '0 / −5 mm', '0 mm', '0°', '0°', '−3°']);
   expect(grip.state!.device).toBe('Meta Quest Touch Plus');
   expect(createPreferenceStore(storage).preferences).toEqual(store.preferences);
   press('left', 'reset grip');

@@ -9,7 +9,7 @@ import {
   menuMargin,
   menuWidth,
 } from '../../../activity/activity-menu';
-import { type GripControl, type GripRow, type GripState, gripHands, handLabels } from '../grip-control';
+import { type GripControl, type GripRow, type GripState, gripHands, gripKinds, handLabels } from '../grip-control';
 
 /** The top of the row of hands, of each group of steps, and the height of a row [pixels]. */
 const handsTop = 112;
@@ -70,7 +70,7 @@ export function gripSheet(state: GripState, grip: GripControl, close: () => void
       const soft = { font: '400 30px', color: vrColors.inkSoft, baseline: 'middle' } as const;
       drawText(context, state.device, [menuWidth - menuMargin - 4, 72], { ...soft, align: 'right', maxWidth: 380 });
       for (const kind of ['Move', 'Turn'] as const)
-        drawText(context, `${kind} the drawn hands`, [menuMargin + 4, groupTops[kind] - 32], soft);
+        drawText(context, gripKinds[kind], [menuMargin + 4, groupTops[kind] - 32], soft);
       for (const [{ value }, top] of placed(state.rows)) {
         const middle = [menuWidth / 2, top + (rowHeight - buttonGap) / 2 + 2] as const;
         const font = '600 28px';
