@@ -12,17 +12,25 @@ export interface Drawn {
   readonly isScene?: true;
 }
 
-/** The library's BodyTracker, which every example leaves on the window. */
+interface Coordinates {
+  readonly x: number;
+  readonly y: number;
+  readonly z: number;
+}
+
+/** The library's BodyTracker, or its Body without an avatar, which every example leaves on the window. */
 interface SelfAvatar {
   readonly pose: object | null;
   readonly object: Drawn;
   readonly estimator: string;
-  readonly avatar: { jointPositions(): Record<string, { x: number; y: number; z: number }> };
+  readonly avatar?: { jointPositions(): Record<string, Coordinates> };
 }
 
 declare global {
   interface Window {
     selfAvatar?: SelfAvatar | null;
+    /** The joints of a body without an avatar. */
+    joints?: Record<string, { readonly position: Coordinates }>;
     /** The global of iwer's script. */
     IWER: {
       readonly metaQuest3: object;
@@ -80,10 +88,10 @@ export async function enterExample(page: Page, placement: Placement): Promise<Em
   return headset;
 }
 
-/** Returns the position of a joint of the wearer's own avatar [m, floor frame]. */
+/** Returns the position of a joint of the wearer's own body [m, floor frame]. */
 export const ownJoint = (page: Page, name: string): Promise<readonly [number, number, number]> =>
   page.evaluate((name) => {
-    const at = window.selfAvatar?.avatar.jointPositions()[name];
+    const at = window.joints?.[name]?.position ?? window.selfAvatar?.avatar?.jointPositions()[name];
     if (!at) throw new Error(`no ${name}`);
     return [at.x, at.y, at.z] as const;
   }, name);

@@ -13,9 +13,8 @@ export async function inARoom(renderer: WebGLRenderer, scene: Scene): Promise<Jo
     console.log(reference);
     return loadMannequin();
   };
-  const room = await joinRoom('https://example.org', { name: 'Ada', body, room: 'lunch', avatar });
+  const room = await joinRoom('https://example.org', { name: 'Ada', body, room: 'lunch', circle: 2, avatar });
   scene.add(body.object, room.others.object);
-  room.standApart();
   renderer.setAnimationLoop((timeMs, frame) => {
     body.update(timeMs, frame);
     room.update(timeMs);

@@ -43,12 +43,13 @@ export async function pack(names = Object.keys(packages)) {
 
 /**
  * Installs and builds one example in the folder of the tarballs, with each of its scripts for a build. Resolves to its
- * folder, which is the page where the example needs no build.
+ * folder, which is the page where the example needs no build. `versions`: of dependencies, in place of the example's.
  */
-export async function buildExample(name, folder) {
-  const own = join(folder, `example-${name}`);
+export async function buildExample(name, folder, versions = {}) {
+  const own = mkdtempSync(join(folder, `example-${name}-`));
   cpSync(join(root, 'examples', name), own, { recursive: true });
   const manifest = manifestOf(name);
+  Object.assign(manifest.dependencies, versions);
   for (const packed of Object.keys(packages).filter((packed) => packed in manifest.dependencies)) {
     const [tarball] = readdirSync(join(folder, packed));
     manifest.dependencies[packed] = `file:../${packed}/${tarball}`;

@@ -97,6 +97,14 @@ const alias = Object.fromEntries(
   ]),
 );
 
+/**
+ * What gltf-validator looks for in Node: there it would call `require`, which a module has not, and Parcel installs
+ * packages for the others. Without them it runs in Node as in a browser.
+ */
+const withoutNode = Object.fromEntries(
+  ['process', 'Buffer', '__dirname', '__filename'].map((name) => [name, 'undefined']),
+);
+
 /** Bundles the entries; `input` maps the name of each entry to its source file. */
 async function bundle(input, outside = external) {
   return rolldown({
@@ -108,8 +116,7 @@ async function bundle(input, outside = external) {
     moduleTypes: { '.bin': 'binary', '.vrm': 'binary' },
     plugins: [workersAsText, packageCollector(packages)],
     tsconfig: join(root, 'tsconfig.json'),
-    // In Node, gltf-validator would call `require`, which a module has not; it runs there as in a browser.
-    transform: { define: { 'process.versions': 'undefined' } },
+    transform: { define: withoutNode },
   });
 }
 

@@ -1,9 +1,11 @@
 import { armSpanFromFingertipSpan } from 'threepoint/core';
 import {
+  distance,
   enterVr,
   expect,
   freshTest,
   joint,
+  keepPicture,
   load,
   openWithHeadset,
   overlap,
@@ -11,6 +13,7 @@ import {
   settledJoint,
   test,
 } from '../page-fixture';
+import { lookingAtMenu, pressInMenu, recordCanvasText, waitForCanvasText } from './hands-on-menu';
 
 const withHeadset = 'emulate&actor=off&quality=low';
 
@@ -144,22 +147,28 @@ freshTest(
   },
 );
 
-test('a corrected grip moves the drawn wrist and is remembered after a reload', async ({ page }) => {
+test('a grip corrected in the headset’s menu moves the drawn wrist, and the panel remembers it', async ({ page }) => {
+  await page.addInitScript(recordCanvasText);
   const headset = await openWithHeadset(page, 'estimator=ik');
   await enterVr(page);
-  await headset.place(armsAhead);
+  await headset.place({ ...armsAhead, head: lookingAtMenu });
+  await pressInMenu(page, 'My grip');
+  await keepPicture(page, 'grip-in-menu');
+  const left = await settledJoint(page, 'leftHand');
+  await pressInMenu(page, 'Forward');
+  await waitForCanvasText(page, '+5 mm');
+  // The left hand, level and palm inwards, moves along its fingers.
+  await expect.poll(async () => distance(await joint(page, 'leftHand'), left)).toBeCloseTo(0.005, 3);
   await page.getByRole('button', { name: 'Controls' }).click();
   await expect(page.locator('#emulator')).toBeVisible();
   expect(await overlap(page, '.panel', '#emulator')).toBe(false);
-  await expect(page.getByText('Stored for the controllers “Meta Quest Touch Plus”.')).toBeVisible();
-  const position = page.getByRole('slider', { name: 'Wrist position' });
-  await expect(position).toHaveValue('0');
-  const before = await settledJoint(page, 'rightHand');
-  await position.fill('5');
-  await expect(page.getByText('5 cm further from the grip')).toBeVisible();
-  await expect.poll(async () => (await joint(page, 'rightHand'))[2] - before[2]).toBeCloseTo(0.05, 2);
+  await expect(page.getByText('controllers “Meta Quest Touch Plus”.')).toBeVisible();
+  const forward = page.getByRole('group', { name: 'Move: Back, Forward' });
+  await expect(forward.getByRole('status')).toHaveText('+5 mm');
+  await headset.endSession();
+  await forward.getByRole('button', { name: 'Forward' }).click();
   await load(page, withHeadset);
-  await expect(page.getByRole('slider', { name: 'Wrist position' })).toHaveValue('5');
+  await expect(forward.getByRole('status')).toHaveText('+10 mm');
   await page.getByRole('button', { name: 'Reset grip' }).click();
-  await expect(page.getByRole('slider', { name: 'Wrist position' })).toHaveValue('0');
+  await expect(forward.getByRole('status')).toHaveText('0 mm');
 });

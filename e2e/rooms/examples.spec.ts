@@ -12,16 +12,20 @@ import { wristByGrip, wristName } from '../hands-on-controllers';
 import { distance } from '../page-fixture';
 import { serveStatic } from '../static-server';
 
-/** The part of a three.js object by which the others' bodies are measured. */
+/** The parts of three.js objects by which the others' bodies are measured. */
+interface Placed {
+  readonly matrixWorld: { readonly elements: number[] };
+}
+
 interface Body {
   readonly visible: boolean;
-  getObjectByName(name: string): { readonly matrixWorld: { readonly elements: readonly number[] } } | undefined;
+  getObjectByName(name: string): Placed | undefined;
 }
 
 declare global {
   interface Window {
     /** The object with a body for each other person, which every example leaves on the window. */
-    others?: { readonly children: readonly Body[] };
+    others?: Placed & { readonly children: readonly Body[] };
     /** The room, which the examples with `joinRoom` leave on the window. */
     room?: {
       readonly seat: number | null;
@@ -76,7 +80,14 @@ const bodiesIn = ({ page }: Person) =>
     return { loaded: children.length, shown: children.filter(({ visible }) => visible).length };
   });
 
-/** Returns where a joint of the only shown body of another person is drawn [m]; null: there is no such body. */
+/** Returns a point of a page's scene in the frame that the people share, which is that of the others' bodies. */
+const inSharedFrame = ({ page }: Person, point: Point): Promise<Point> =>
+  page.evaluate(([x, y, z]) => {
+    const shared = new DOMMatrix(window.others!.matrixWorld.elements).inverse().transformPoint({ x, y, z });
+    return [shared.x, shared.y, shared.z] as const;
+  }, point);
+
+/** Returns where a joint of the only shown body of another person is drawn in the scene [m]; null: there is none. */
 const drawnJoint = ({ page }: Person, name: string): Promise<Point | null> =>
   page.evaluate((name) => {
     const shown = window.others?.children.filter(({ visible }) => visible) ?? [];
@@ -84,14 +95,15 @@ const drawnJoint = ({ page }: Person, name: string): Promise<Point | null> =>
     return elements ? ([elements[12]!, elements[13]!, elements[14]!] as const) : null;
   }, name);
 
-/** Waits until a joint of the other is drawn within 1 cm of this position. */
+/** Waits until a joint of the other is drawn within 1 cm of this position in the shared frame. */
 async function expectDrawn(viewer: Person, joint: string, wanted: () => Promise<Point>): Promise<number> {
   let millimetres = Number.NaN;
   await expect
     .poll(
       async () => {
         const drawn = await drawnJoint(viewer, joint);
-        millimetres = drawn ? 1000 * distance(drawn, await wanted()) : Number.POSITIVE_INFINITY;
+        const at = drawn && (await inSharedFrame(viewer, drawn));
+        millimetres = at ? 1000 * distance(at, await wanted()) : Number.POSITIVE_INFINITY;
         return millimetres;
       },
       { message: `the other's ${joint} in ${viewer.name}'s page [mm]`, intervals: [100] },
@@ -104,8 +116,10 @@ async function expectDrawn(viewer: Person, joint: string, wanted: () => Promise<
 async function expectSees(viewer: Person, other: Person): Promise<void> {
   const distances: string[] = [];
   for (const side of ['left', 'right'] as const) {
-    const hand = await expectDrawn(viewer, wristName[side], () => wristByGrip(other.headset, side));
-    const elbow = await expectDrawn(viewer, `${side}LowerArm`, () => ownJoint(other.page, `${side}LowerArm`));
+    const ofHand = async () => inSharedFrame(other, await wristByGrip(other.headset, side));
+    const ofElbow = async () => inSharedFrame(other, await ownJoint(other.page, `${side}LowerArm`));
+    const hand = await expectDrawn(viewer, wristName[side], ofHand);
+    const elbow = await expectDrawn(viewer, `${side}LowerArm`, ofElbow);
     distances.push(`${side} hand ${hand.toFixed(1)} mm, elbow ${elbow.toFixed(1)} mm`);
   }
   console.log(`${other.name} in ${viewer.name}'s page: ${distances.join('; ')}`);

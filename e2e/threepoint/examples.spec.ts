@@ -35,6 +35,13 @@ const placement = {
   right: { position: [0.5, 1.5, -0.35] },
 } as const;
 
+/** A step to the side with both hands down and apart. */
+const moved = {
+  head: { position: [0.3, 1.6, 0.05] },
+  left: { position: [-0.2, 1, -0.15] },
+  right: { position: [0.75, 1.1, -0.1] },
+} as const;
+
 /** The second body has the pose of the first, and goes with its session. */
 async function sharesItsBody(page: Page, headset: EmulatedHeadset): Promise<void> {
   const apart = () =>
@@ -54,21 +61,8 @@ async function sharesItsBody(page: Page, headset: EmulatedHeadset): Promise<void
   await expect.poll(shown).toEqual([false, false]);
 }
 
-/** Opens a page and checks that the learned body of the wearer is drawn in its scene, hands on the controllers. */
-async function drawsTheWearer(page: Page, address: string): Promise<EmulatedHeadset> {
-  // Frames as small as the emulator's own: software draws them.
-  await page.setViewportSize({ width: 480, height: 270 });
-  await emulateHeadset(page);
-  await page.goto(address);
-  const headset = await enterExample(page, placement);
-  // Through every parent up to the scene: poses alone would be right of a body that no one sees.
-  const drawn = () =>
-    page.evaluate(() => {
-      let object: Drawn | null | undefined = window.selfAvatar?.object;
-      while (object?.visible && !object.isScene) object = object.parent;
-      return object?.isScene === true && object.visible;
-    });
-  await expect.poll(drawn, { message: 'the body is in the scene and shown' }).toBe(true);
+/** Waits until both wrists of the body are within 1 mm of where the controllers are held. */
+async function handsOnControllers(page: Page, headset: EmulatedHeadset): Promise<void> {
   for (const side of ['left', 'right'] as const) {
     const wanted = await wristByGrip(headset, side);
     await expect
@@ -77,6 +71,41 @@ async function drawsTheWearer(page: Page, address: string): Promise<EmulatedHead
       })
       .toBeLessThan(1);
   }
+}
+
+/** Opens a page, enters VR and checks that the learned body follows head and hands when they move. */
+async function followsTheWearer(page: Page, address: string): Promise<EmulatedHeadset> {
+  // Frames as small as the emulator's own: software draws them.
+  await page.setViewportSize({ width: 480, height: 270 });
+  await emulateHeadset(page);
+  await page.goto(address);
+  const headset = await enterExample(page, placement);
+  await handsOnControllers(page, headset);
+  const followers = ['head', 'leftLowerArm', 'rightLowerArm'];
+  const before = await Promise.all(followers.map((name) => ownJoint(page, name)));
+  await headset.place(moved);
+  await handsOnControllers(page, headset);
+  for (const [index, name] of followers.entries()) {
+    await expect
+      .poll(async () => 100 * distance(await ownJoint(page, name), before[index]!), {
+        message: `${name} moves by [cm]`,
+      })
+      .toBeGreaterThan(8);
+  }
+  return headset;
+}
+
+/** Checks that the learned body of the wearer follows them and is drawn in the page's scene. */
+async function drawsTheWearer(page: Page, address: string): Promise<EmulatedHeadset> {
+  const headset = await followsTheWearer(page, address);
+  // Through every parent up to the scene: poses alone would be right of a body that no one sees.
+  const drawn = () =>
+    page.evaluate(() => {
+      let object: Drawn | null | undefined = window.selfAvatar?.object;
+      while (object?.visible && !object.isScene) object = object.parent;
+      return object?.isScene === true && object.visible;
+    });
+  await expect.poll(drawn, { message: 'the body is in the scene and shown' }).toBe(true);
   return headset;
 }
 
@@ -110,7 +139,7 @@ function built(name: string): Promise<string> {
 }
 
 /** The examples with tests of their own. */
-const special = ['babylon', 'bundlers', 'next'];
+const special = ['babylon', 'bundlers', 'next', 'webgl'];
 
 test.describe('examples of the package @full', () => {
   test('are short', () => {
@@ -137,7 +166,17 @@ test.describe('examples of the package @full', () => {
     });
   }
 
-  for (const bundler of ['vite', 'webpack', 'rollup', 'esbuild']) {
+  test('aframe: A-Frame 1.7 with its own three.js draws the body', async ({ page }) => {
+    test.setTimeout(300_000);
+    const versions = { aframe: '1.7.1', three: 'npm:super-three@0.173.5' };
+    const server = await serveStatic(join(await buildExample('aframe', folder, versions), 'dist'));
+    const complaints = complaintsOf(page);
+    await drawsTheWearer(page, server.address);
+    expect(complaints).toEqual([]);
+    await server.close();
+  });
+
+  for (const bundler of ['vite', 'webpack', 'rollup', 'esbuild', 'parcel']) {
     test(`bundlers: a page by ${bundler} has the learned network`, async ({ page }) => {
       test.setTimeout(300_000);
       const server = await serveStatic(join(await built('bundlers'), 'dist', bundler));
@@ -166,6 +205,16 @@ test.describe('examples of the package @full', () => {
       await server.close();
     });
   }
+
+  test('webgl: without an engine the joints follow the wearer', async ({ page }) => {
+    test.setTimeout(300_000);
+    const server = await serveStatic(join(await built('webgl'), 'dist'));
+    const complaints = complaintsOf(page);
+    await followsTheWearer(page, server.address);
+    await screenshot(page, 'artifacts/examples/webgl.png');
+    expect(complaints).toEqual([]);
+    await server.close();
+  });
 
   test("babylon: Babylon's own body tracking has the learned body", async ({ page }) => {
     test.setTimeout(300_000);

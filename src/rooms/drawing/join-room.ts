@@ -44,6 +44,11 @@ export interface JoinRoomOptions<Game extends HostedGame = People> {
   readonly room?: string;
   /** The client policy of the room's game; the server needs its match policy. Default: a room without a game. */
   readonly game?: ClientPolicy<Game>;
+  /**
+   * The radius [m] of the circle on which the people stand, facing each other; its middle is the origin of
+   * `others.object`. 0: all stand there, as people in one real place do. Default: 1.5, and 0 in the arena of a game.
+   */
+  readonly circle?: number;
   /** The file of the user's avatar, which the server sends to the others. Default: they draw the mannequin. */
   readonly avatarFile?: Blob | null;
   /**
@@ -66,7 +71,10 @@ export interface RoomPerson {
 /** A joined room. It reconnects until `leave` is called or the server ends the connection. */
 export interface JoinedRoom<Game extends HostedGame = People> {
   readonly others: {
-    /** The object to add to the scene, with a body for each other person. People are within 8.19 m of its origin. */
+    /**
+     * The floor that the people of the room share, with a body for each other person: add it to the scene, and to it
+     * what all of them see in one place. People are within 8.19 m of its origin.
+     */
     readonly object: Object3D;
     /** The other people of the room. */
     readonly people: readonly RoomPerson[];
@@ -81,11 +89,6 @@ export interface JoinedRoom<Game extends HostedGame = People> {
    * the events of the game since the last call.
    */
   update(timeMs: number): ConnectionUpdate<Game>;
-  /**
-   * Moves `others.object` so that the people of the room stand on a circle of this radius [m], facing each other. Each
-   * page calls it, after joining; without it all users stand where their floors have their origins. A spectator stays.
-   */
-  standApart(radius?: number): void;
   /** Gives up the seat, ends the connection and removes the others. */
   leave(): void;
 }
@@ -104,6 +107,8 @@ const peopleClientPolicy: ClientPolicy<People> = {
 
 /** The number of attempts before `joinRoom` rejects. */
 const maxAttempts = 3;
+/** The usual radius of the circle on which the people of a room without a game stand [m]. */
+const usualCircle = 1.5;
 /** The measures of a spectator, which no page draws. */
 const spectatorCalibration: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 /** The largest x and z of a head in a packet [m]. */
@@ -178,21 +183,26 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
   readonly #body: RoomBody | null;
   readonly #bodies: RoomBodies;
   readonly #placed = new PlacedPose();
+  readonly #circle: number;
+  /** The floor of a body without an avatar; null: at that of `others.object`. */
+  readonly #floor: Object3D | null;
+  /** The seat whose place on the circle is taken; null: none yet. */
+  #placedSeat: number | null = null;
   #calibration: Calibration | null;
   #warnedOfDistance = false;
-  /** The floor of a body without an avatar, at the origin of the scene; null: at that of `others.object`. */
-  #floor: Object3D | null = null;
 
   constructor(
     connection: Connection<Game>,
     address: RoomAddress<Game>,
-    { body, avatar: load }: JoinRoomOptions<Game>,
+    { body, avatar: load, game, circle = game ? 0 : usualCircle }: JoinRoomOptions<Game>,
     { worn, loadBuiltIn }: { readonly worn: OwnAvatar; loadBuiltIn(): Promise<Avatar> },
   ) {
     const client = new RoomClient(connection);
     const people = new OtherPeople();
     this.client = client;
     this.#body = body;
+    this.#circle = circle;
+    this.#floor = circle > 0 ? new Object3D() : null;
     this.#calibration = body?.calibration ?? null;
     this.#bodies = new RoomBodies({
       exchange: address.avatars,
@@ -211,6 +221,7 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
         return people.of(client);
       },
     };
+    this.#standOnCircle();
     body?.addEventListener?.('discontinuity', this.#onDiscontinuity);
     globalThis.document?.addEventListener('visibilitychange', this.#onVisibility);
   }
@@ -226,20 +237,11 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
   update(timeMs: number): ConnectionUpdate<Game> {
     const time = timeMs / 1000;
     const update = this.client.update(time);
+    this.#standOnCircle();
     this.#bodies.share();
     this.#send(time);
     this.#bodies.show(this.client.people, time);
     return update;
-  }
-
-  standApart(radius = 1.5): void {
-    const { seat } = this;
-    if (seat === null) return;
-    const { object } = this.others;
-    this.#floor = new Object3D();
-    // The middle of the circle is ahead of every user, and the circle is turned under them.
-    object.position.set(0, 0, -radius);
-    object.rotation.set(0, -2 * Math.PI * placeOnCircle(seat), 0);
   }
 
   leave(): void {
@@ -247,6 +249,19 @@ class JoinedRoomImplementation<Game extends HostedGame> implements JoinedRoom<Ga
     globalThis.document?.removeEventListener('visibilitychange', this.#onVisibility);
     this.client.connection?.leave();
     this.#bodies.dispose();
+  }
+
+  /** Places the shared floor for a user who has taken a seat, or another one after a lost connection. */
+  #standOnCircle(): void {
+    const { seat } = this;
+    if (seat === this.#placedSeat || seat === null || this.#circle === 0) return;
+    this.#placedSeat = seat;
+    const { object } = this.others;
+    // The middle of the circle is ahead of every user, and the circle is turned under them.
+    object.position.set(0, 0, -this.#circle);
+    object.rotation.set(0, -2 * Math.PI * placeOnCircle(seat), 0);
+    // A user at another place of the shared floor moves there at once.
+    this.client.discontinuity();
   }
 
   #send(time: number): void {

@@ -20,7 +20,7 @@ export {
   skinToneOf,
   skinTones,
 } from './body/built-in-bodies';
-export type { Calibration, GripOffset, GripOffsets, MeasureRange } from './body/calibration';
+export type { Calibration, GripOffset, GripOffsets, HandleFit, MeasureRange } from './body/calibration';
 export {
   armSpanFromFingertipSpan,
   armSpanRange,
@@ -30,6 +30,7 @@ export {
   eyeHeightFromStature,
   fingertipSpanFromArmSpan,
   forearmRange,
+  handleFitParts,
   largestGripOffset,
   sameMeasures,
   statureFromEyeHeight,

@@ -1,58 +1,49 @@
-import type { GripOffsets } from '../core/body/calibration';
+import { type GripOffsets, type HandleFit, handleFitParts } from '../core/body/calibration';
 import { sideSign } from '../core/body/skeleton';
 import type { Frame, Pose } from '../core/math/pose';
-import { conjugate, fromAxes, multiply, type Quat, rotate } from '../core/math/quat';
+import { conjugate, fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { add, cross, scale, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import { add, subtract, type Vec3, vec3 } from '../core/math/vec3';
 
-/**
- * The fit of a controller in the hand. WebXR's grip: origin in the middle of the fist, −Z along the handle towards the
- * thumb, X through the back of the hand (+X right, −X left). The handle leans from upright (across the palm) towards
- * the fingers.
- */
-export interface HandleFit {
-  /** The middle of the fist from the wrist [m]: towards the knuckles, and below the back of the hand. */
-  readonly ahead: number;
-  readonly below: number;
-  /** The lean of the handle's thumb end towards the fingers [rad]. */
-  readonly lean: number;
-}
-
-const degrees = (value: number): number => (value * Math.PI) / 180;
+/** Returns the fit of a handle in a level hand. `lean`: [degrees]. */
+const held = (ahead: number, below: number, lean: number): HandleFit => ({
+  ...{ ahead, below, thumbward: 0 },
+  ...{ lean: (lean * Math.PI) / 180, pitch: 0, roll: 0 },
+});
 
 /**
  * The fits by the profile names of the WebXR input profiles registry. The fist is the same for all; the leans are our
  * estimates from the angle between grip and target ray that the runtimes report (Touch: 45°) with the hand pointing
- * along the ray. The registry gives a Galaxy XR controller the parts of a Touch, and has no profile of a PlayStation
- * VR2 Sense, which headsets report as generic: both are held like a Touch. An MX Ink is a pen: thumb and finger hold it
+ * along the ray. None is measured on people. The registry gives a Galaxy XR controller the parts of a Touch, and has no
+ * profile of a PlayStation VR2 Sense: both are held like a Touch. An MX Ink is a pen: thumb and finger hold it
  * before the knuckles, with its tip ahead. No source states its grip, which is our estimate. `GripOffset` corrects any.
  */
 const fits: Readonly<Record<string, HandleFit>> = {
-  'meta-quest-touch-plus': { ahead: 0.08, below: 0.025, lean: degrees(45) },
-  'meta-quest-touch-pro': { ahead: 0.08, below: 0.025, lean: degrees(45) },
-  'oculus-touch-v3': { ahead: 0.08, below: 0.025, lean: degrees(45) },
-  'oculus-touch-v2': { ahead: 0.08, below: 0.025, lean: degrees(45) },
-  'oculus-touch': { ahead: 0.08, below: 0.025, lean: degrees(40) },
-  'samsung-galaxyxr': { ahead: 0.08, below: 0.025, lean: degrees(45) },
-  'logitech-mx-ink': { ahead: 0.12, below: 0.045, lean: degrees(70) },
-  'pico-4': { ahead: 0.08, below: 0.025, lean: degrees(42) },
-  'pico-4u': { ahead: 0.08, below: 0.025, lean: degrees(42) },
-  'bytedance-pico-4': { ahead: 0.08, below: 0.025, lean: degrees(42) },
-  'valve-index': { ahead: 0.085, below: 0.022, lean: degrees(40) },
-  'htc-vive': { ahead: 0.085, below: 0.03, lean: degrees(50) },
-  'htc-vive-focus-3': { ahead: 0.08, below: 0.025, lean: degrees(45) },
-  'microsoft-mixed-reality': { ahead: 0.08, below: 0.028, lean: degrees(35) },
-  'windows-mixed-reality': { ahead: 0.08, below: 0.028, lean: degrees(35) },
+  'meta-quest-touch-plus': held(0.08, 0.025, 45),
+  'meta-quest-touch-pro': held(0.08, 0.025, 45),
+  'oculus-touch-v3': held(0.08, 0.025, 45),
+  'oculus-touch-v2': held(0.08, 0.025, 45),
+  'oculus-touch': held(0.08, 0.025, 40),
+  'samsung-galaxyxr': held(0.08, 0.025, 45),
+  'logitech-mx-ink': held(0.12, 0.045, 70),
+  'pico-4': held(0.08, 0.025, 42),
+  'pico-4u': held(0.08, 0.025, 42),
+  'bytedance-pico-4': held(0.08, 0.025, 42),
+  'valve-index': held(0.085, 0.022, 40),
+  'htc-vive': held(0.085, 0.03, 50),
+  'htc-vive-focus-3': held(0.08, 0.025, 45),
+  'microsoft-mixed-reality': held(0.08, 0.028, 35),
+  'windows-mixed-reality': held(0.08, 0.028, 35),
 };
 
 /** The fit of unlisted profiles: most handles follow Touch. */
-export const genericFit: HandleFit = { ahead: 0.08, below: 0.025, lean: degrees(45) };
+export const genericFit: HandleFit = held(0.08, 0.025, 45);
 
 /**
  * The fit of a bare hand, whose grip is where a rod would lie in its fist, straight across the palm: 1 cm and half the
  * thickness of the palm below the middle of the metacarpal bones (webxr-hand-input 114).
  */
-export const bareHandFit: HandleFit = { ahead: 0.06, below: 0.02, lean: 0 };
+export const bareHandFit: HandleFit = held(0.06, 0.02, 0);
 
 /** The profiles of bare hands: `generic-hand`, `generic-hand-select`, `oculus-hand` and others. */
 const bareHandProfile = /(^|-)hand(-|$)/;
@@ -61,10 +52,13 @@ const bareHandProfile = /(^|-)hand(-|$)/;
 export const gripDevice = (profiles: readonly string[]): string =>
   profiles.find((profile) => fits[profile]) ?? profiles[0] ?? 'unknown';
 
-/** Returns the fit with the user's offset for this device; the same object without one. */
-export function adjustedFit(fit: HandleFit, profiles: readonly string[], offsets: GripOffsets): HandleFit {
-  const offset = offsets[gripDevice(profiles)];
-  return offset ? { ...fit, ahead: fit.ahead + offset.ahead, lean: fit.lean + offset.lean } : fit;
+/** Returns the fit with the user's offset for this device in this hand; the same object without one. */
+export function adjustedFit(fit: HandleFit, profiles: readonly string[], side: Side, offsets: GripOffsets): HandleFit {
+  const offset = offsets[gripDevice(profiles)]?.[side];
+  if (!offset) return fit;
+  const adjusted = { ...fit };
+  for (const part of handleFitParts) adjusted[part] += offset[part] ?? 0;
+  return adjusted;
 }
 
 /** Returns the fit of the first known profile of an input source. */
@@ -97,16 +91,18 @@ function gripInWrist(side: Side, fit: HandleFit): HeldGrip {
   return known[side];
 }
 
-function holdGrip(side: Side, { ahead, below, lean }: HandleFit): HeldGrip {
+/**
+ * WebXR's grip has its origin in the middle of the fist, −Z along the handle towards the thumb, and X through the back
+ * of the hand (+X right, −X left).
+ */
+function holdGrip(side: Side, { ahead, below, thumbward, lean, pitch, roll }: HandleFit): HeldGrip {
   const sigma = sideSign(side);
-  const thumb = vec3(-sigma, 0, 0);
-  const back = vec3(0, 1, 0);
-  const knuckles = vec3(0, 0, -1);
-  const handle = add(scale(thumb, Math.cos(lean)), scale(knuckles, Math.sin(lean)));
-  const x = scale(back, sigma);
-  const z = scale(handle, -1);
-  const orientation = fromAxes(x, cross(z, x), z);
-  return { orientation, inverse: conjugate(orientation), position: vec3(0, -below, -ahead) };
+  const acrossPalm = fromAxes(vec3(0, sigma, 0), vec3(0, 0, 1), vec3(sigma, 0, 0));
+  const pitched = fromAxisAngle(vec3(1, 0, 0), pitch);
+  const rolled = multiply(pitched, fromAxisAngle(vec3(0, 0, 1), -sigma * roll));
+  const leaning = multiply(rolled, fromAxisAngle(vec3(0, 1, 0), -sigma * lean));
+  const orientation = multiply(leaning, acrossPalm);
+  return { orientation, inverse: conjugate(orientation), position: vec3(-sigma * thumbward, -below, -ahead) };
 }
 
 /** Returns the wrist of a hand that holds a controller by this grip, in the grip's space. */

@@ -1,10 +1,10 @@
-import type { GripOffsets } from '../core/body/calibration';
+import type { GripOffsets, HandleFit } from '../core/body/calibration';
 import { type HandShape, handShapeFromClosing, makeHandShape } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/input/button-presses';
 import type { TrackedPose } from '../core/math/pose';
 import { type Side, sides } from '../core/math/side';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
-import { adjustedFit, bareHandFit, type HandleFit, handleFit, wristFromGrip } from './grip-offsets';
+import { adjustedFit, bareHandFit, handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
 import type { InputFrame, Pointing, PointingHand } from './pointing';
 import { SourceChoice } from './source-choice';
@@ -170,7 +170,7 @@ export class InputReader {
     const grip = frame.getPose(source.gripSpace, space);
     if (!grip) return null;
     const tracked = toTrackedPose(grip);
-    return tracked && { ...wristFromGrip(tracked, side, this.#fitOf(source)), tracking: tracked.tracking };
+    return tracked && { ...wristFromGrip(tracked, side, this.#fitOf(source, side)), tracking: tracked.tracking };
   }
 
   /** Sets the user's offsets of controllers. */
@@ -180,11 +180,11 @@ export class InputReader {
     this.#fits = new WeakMap();
   }
 
-  #fitOf(source: XRInputSource): HandleFit {
+  #fitOf(source: XRInputSource, side: Side): HandleFit {
     const known = this.#fits.get(source);
     if (known) return known;
     const base = fitOf(source);
-    const fit = base === bareHandFit ? base : adjustedFit(base, source.profiles, this.#offsets);
+    const fit = base === bareHandFit ? base : adjustedFit(base, source.profiles, side, this.#offsets);
     this.#fits.set(source, fit);
     return fit;
   }

@@ -13,6 +13,7 @@ export const studioMenu: VrMenuState = {
   inPassthrough: false,
   builtInBody: 'mannequin',
   skinTone: undefined,
+  holdsControllers: false,
   places: [],
   activity: null,
   sheet: null,

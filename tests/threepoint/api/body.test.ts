@@ -247,7 +247,7 @@ describe('a body', () => {
 
   test('keeps the offsets of grips whatever is measured, until others are set', async () => {
     const { body } = await observed({ estimator: 'ik' });
-    const gripOffsets = { 'valve-index': { ahead: 0.01, lean: -0.1 } };
+    const gripOffsets = { 'valve-index': { right: { ahead: 0.01, lean: -0.1 } } };
     body.setGripOffsets(gripOffsets);
     for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.7));
     expect(body.calibration).toMatchObject({ eyeHeight: 1.7, gripOffsets });
@@ -255,7 +255,9 @@ describe('a body', () => {
     expect(body.calibration).toEqual({ ...calibration, gripOffsets });
     body.calibrate('auto');
     expect(body.userCalibration.gripOffsets).toEqual(gripOffsets);
-    expect(() => body.setGripOffsets({ any: { ahead: 2, lean: 0 } })).toThrow('The offset of any exceeds 0.10 m');
+    expect(() => body.setGripOffsets({ any: { left: { roll: 2 } } })).toThrow(
+      'The offset of any is not { left, right } of at most 0.1 m and 1 rad',
+    );
     body.setGripOffsets({});
     expect(body.userCalibration.gripOffsets).toEqual({});
   });

@@ -219,7 +219,7 @@ describe('a body in a session of three.js', () => {
     run(40);
     const before = { ...tracker.avatar.jointPositions().leftHand! };
     const [source] = headset.session.inputSources;
-    tracker.body.setGripOffsets({ [gripDevice(source!.profiles)]: { ahead: 0.03, lean: 0 } });
+    tracker.body.setGripOffsets({ [gripDevice(source!.profiles)]: { left: { ahead: 0.03 } } });
     run(2);
     expect(distance(tracker.avatar.jointPositions().leftHand!, before)).toBeCloseTo(0.03, 3);
   });

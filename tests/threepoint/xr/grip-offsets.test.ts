@@ -1,5 +1,6 @@
 import fc from 'fast-check';
-import { angleBetween, distance, dot, identity, rotate, vec3, zero } from 'threepoint/math';
+import type { GripOffset } from 'threepoint';
+import { angleBetween, distance, dot, identity, rotate, type Side, type Vec3, vec3, zero } from 'threepoint/math';
 import { describe, expect, test } from 'vitest';
 import { rotateInverse } from '../../../src/threepoint/core/math/quat';
 import {
@@ -48,27 +49,57 @@ describe('a controller in the hand', () => {
   test('the first known profile decides; unknown devices get the generic fit', () => {
     expect(handleFit(['no-such-device', 'htc-vive', 'generic-trigger'])).toEqual(handleFit(['htc-vive']));
     expect(handleFit(['no-such-device'])).toEqual(genericFit);
+    // Controllers without a profile of their own, as a PlayStation VR2 Sense: held like a Touch, corrected apart.
+    const generic = ['generic-trigger-squeeze-thumbstick', 'generic-trigger'];
+    expect(handleFit(generic)).toEqual(handleFit(['meta-quest-touch-plus']));
+    expect(gripDevice(generic)).toBe('generic-trigger-squeeze-thumbstick');
   });
 
-  test('the user’s offset moves the wrist back and turns it, for their device alone', () => {
+  describe('the user’s offset', () => {
     const profiles = ['meta-quest-touch-plus-v9', 'meta-quest-touch-plus', 'generic-trigger-squeeze'];
     const device = gripDevice(profiles);
-    expect(device).toBe('meta-quest-touch-plus');
-    const offsets = { [device]: { ahead: 0.02, lean: 0.2 } };
-    expect(adjustedFit(genericFit, ['htc-vive'], offsets)).toBe(genericFit);
-    const grip = { position: vec3(0, 1, -0.4), orientation: fromEulerYxz(vec3(Math.PI / 4, 0, 0)) };
-    for (const side of ['left', 'right'] as const) {
-      const before = wristFromGrip(grip, side, handleFit(profiles));
-      const after = wristFromGrip(
-        grip,
-        side,
-        adjustedFit(handleFit(profiles), profiles, { [device]: { ahead: 0.02, lean: 0 } }),
-      );
-      expect(distance(before.position, after.position)).toBeCloseTo(0.02, 9);
-      expect(after.position.z).toBeGreaterThan(before.position.z + 0.019);
-      const turned = wristFromGrip(grip, side, adjustedFit(handleFit(profiles), profiles, offsets));
-      expect(angleBetween(before.orientation, turned.orientation)).toBeCloseTo(0.2, 9);
-    }
+    // A flat hand, palm down, whose wrist is at the origin.
+    const level = { position: zero, orientation: identity };
+    /** Returns the wrist that this offset makes of the level one, in a hand that holds the controller. */
+    const moved = (side: Side, offset: GripOffset) => {
+      const fit = handleFit(profiles);
+      const grip = gripFromWrist(level, side, fit);
+      return wristFromGrip(grip, side, adjustedFit(fit, profiles, side, { [device]: { [side]: offset } }));
+    };
+
+    test('is that of the device and of the hand alone', () => {
+      expect(device).toBe('meta-quest-touch-plus');
+      const offsets = { [device]: { left: { ahead: 0.02 } } };
+      expect(adjustedFit(genericFit, ['htc-vive'], 'left', offsets)).toBe(genericFit);
+      expect(adjustedFit(genericFit, profiles, 'right', offsets)).toBe(genericFit);
+      expect(adjustedFit(genericFit, profiles, 'left', offsets).ahead).toBeCloseTo(0.1, 9);
+    });
+
+    test.each(['left', 'right'] as const)('moves the %s wrist along the axes of the hand', (side) => {
+      const thumb = side === 'left' ? 1 : -1;
+      for (const [offset, x, y, z] of [
+        [{ ahead: 0.02 }, 0, 0, 0.02],
+        [{ below: 0.02 }, 0, 0.02, 0],
+        [{ thumbward: 0.02 }, -0.02 * thumb, 0, 0],
+      ] as const) {
+        expect(distance(moved(side, offset).position, vec3(x, y, z))).toBeLessThan(1e-9);
+      }
+    });
+
+    test.each(['left', 'right'] as const)('turns the %s hand about the fist, which stays', (side) => {
+      const thumb = side === 'left' ? 1 : -1;
+      const fist = gripFromWrist(level, side, handleFit(profiles)).position;
+      const turnedTo = (offset: GripOffset, axis: Vec3) => rotate(moved(side, offset).orientation, axis);
+      const [fingers, thumbSide] = [vec3(0, 0, -1), vec3(thumb, 0, 0)];
+      expect(Math.sign(turnedTo({ lean: 0.2 }, fingers).x), 'fingers to the thumb’s side').toBe(thumb);
+      expect(turnedTo({ pitch: -0.2 }, fingers).y, 'fingers up').toBeCloseTo(Math.sin(0.2), 9);
+      expect(turnedTo({ roll: 0.2 }, thumbSide).y, 'thumb down').toBeCloseTo(-Math.sin(0.2), 9);
+      for (const offset of [{ lean: 0.2 }, { pitch: 0.2 }, { roll: 0.2 }]) {
+        const wrist = moved(side, offset);
+        expect(angleBetween(wrist.orientation, identity)).toBeCloseTo(0.2, 9);
+        expect(distance(wrist.position, fist)).toBeCloseTo(distance(zero, fist), 9);
+      }
+    });
   });
 
   test('a pen lies before the knuckles, with its tip ahead', () => {

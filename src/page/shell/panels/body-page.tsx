@@ -1,16 +1,9 @@
 import { useRef } from 'preact/hooks';
-import {
-  armSpanRange,
-  fingertipSpanFromArmSpan,
-  forearmRange,
-  largestGripOffset,
-  type MeasureRange,
-  statureRange,
-} from 'threepoint/core';
-import { Button, Details, Toggle, TypedInput } from 'threepoint-ui/controls';
+import { armSpanRange, fingertipSpanFromArmSpan, forearmRange, type MeasureRange, statureRange } from 'threepoint/core';
+import { Button, Details, Group, Toggle, TypedInput } from 'threepoint-ui/controls';
 import { estimatorTexts, listedEstimators } from '../session/estimator-texts';
+import { type GripControl, type GripState, gripHands, gripKinds, handLabels } from './grip-control';
 import type { PanelPageProps } from './panel-actions';
-import type { GripCorrection } from './panel-state';
 
 const methodDetails = Object.values(estimatorTexts).map(({ label, details }) => [label, details] as const);
 
@@ -115,86 +108,39 @@ function Measures({ state, actions }: PanelPageProps) {
   );
 }
 
-interface SliderProps {
-  readonly label: string;
-  /** Returns a value in words. */
-  readonly inWords: (value: number) => string;
-  /** The largest value; the smallest is its negative. */
-  readonly most: number;
-  readonly value: number;
-  readonly set: (value: number) => void;
-}
-
-/** A correction to both sides of 0, in whole units. */
-const Slider = ({ label, inWords, most, value, set }: SliderProps) => (
-  <label class="slider">
-    <span>{label}</span>
-    <span class="time">{inWords(value)}</span>
-    <input
-      type="range"
-      min={-most}
-      max={most}
-      step={1}
-      aria-label={label}
-      aria-valuetext={inWords(value)}
-      value={Math.round(value)}
-      onInput={({ currentTarget }) => set(currentTarget.valueAsNumber)}
-    />
-  </label>
-);
-
-/** Returns the words for a value to either side of 0. */
-const eitherSide =
-  (unit: string, above: string, below: string) =>
-  (value: number): string => {
-    const size = `${rounded(Math.abs(value))}${unit}`;
-    if (Math.round(value) === 0) return size;
-    return `${size} ${value > 0 ? above : below}`;
-  };
-
-const wristDistance = eitherSide(' cm', 'further from the grip', 'nearer to the grip');
-const wristAngle = eitherSide('°', 'towards the thumb', 'towards the little finger');
-
-/** The parts of profile names whose spelling differs from a capitalised word. */
-const brandWords: Readonly<Record<string, string>> = {
-  htc: 'HTC',
-  mx: 'MX',
-  bytedance: 'ByteDance',
-  galaxyxr: 'Galaxy XR',
-};
-
-/** Returns the name of a controller in words, from its profile name such as `meta-quest-touch-plus`. */
-const controllerName = (profile: string): string =>
-  profile
-    .split('-')
-    .map((word) => brandWords[word] ?? word.charAt(0).toUpperCase() + word.slice(1))
-    .join(' ');
-
-/** How the user holds the controllers that were used last. */
-function Grip({ grip, actions }: { readonly grip: GripCorrection; readonly actions: PanelPageProps['actions'] }) {
-  const correct = (change: Partial<GripCorrection>) => actions.correctGrip({ ...grip, ...change });
+/** How the user holds their controllers. */
+function Grip({ grip, control }: { readonly grip: GripState; readonly control: GripControl }) {
   return (
     <section>
       <h2>Your grip</h2>
       <p class="hint">
-        If the drawn wrists are not at yours in VR, move them here. Both hands move. Stored for the controllers “
-        {controllerName(grip.device)}”.
+        If the drawn hands are not at yours, move them here or by “My grip” in the headset’s menu. Stored for the
+        controllers “{grip.device}”.
       </p>
-      <Slider
-        label="Wrist position"
-        inWords={wristDistance}
-        most={100 * largestGripOffset.ahead}
-        value={grip.aheadCm}
-        set={(aheadCm) => correct({ aheadCm })}
-      />
-      <Slider
-        label="Wrist angle"
-        inWords={wristAngle}
-        most={60}
-        value={grip.leanDegrees}
-        set={(leanDegrees) => correct({ leanDegrees })}
-      />
-      <Button label="Reset" aria-label="Reset grip" onClick={() => correct({ aheadCm: 0, leanDegrees: 0 })} />
+      <Group label="Hands" class="segments">
+        {gripHands.map((hands) => (
+          <Button
+            label={handLabels[hands]}
+            aria-pressed={hands === grip.hands}
+            onClick={() => control.chooseHands(hands)}
+          />
+        ))}
+      </Group>
+      {(['Move', 'Turn'] as const).map((kind) => (
+        <>
+          <small class="hint">{gripKinds[kind]}</small>
+          {grip.rows
+            .filter((row) => row.kind === kind)
+            .map((row) => (
+              <Group label={`${kind}: ${row.less}, ${row.more}`} class="steps">
+                <Button label={row.less} disabled={row.atLeast} onClick={() => control.step(row, -1)} />
+                <output>{row.value}</output>
+                <Button label={row.more} disabled={row.atMost} onClick={() => control.step(row, 1)} />
+              </Group>
+            ))}
+        </>
+      ))}
+      <Button label="Reset" aria-label="Reset grip" onClick={() => control.reset()} />
     </section>
   );
 }
@@ -215,6 +161,6 @@ export const BodyPage = ({ state, actions }: PanelPageProps) => (
       </p>
     </section>
     <Measures state={state} actions={actions} />
-    {state.grip && <Grip grip={state.grip} actions={actions} />}
+    {state.grip && <Grip grip={state.grip} control={actions.grip} />}
   </>
 );

@@ -10,7 +10,6 @@ import type { PanelActions } from './panel-actions';
 import type { PanelState } from './panel-state';
 
 const centimetres = (metres: number): number => 100 * metres;
-const degrees = (radians: number): number => (radians * 180) / Math.PI;
 
 /** The panel and the keys of the desktop page. */
 export class DesktopControls {
@@ -74,10 +73,8 @@ export class DesktopControls {
   }
 
   #state(): PanelState {
-    const { settings, body, stage, avatar, headset, recorder, store } = this.#parts;
-    const { eyeHeight, armSpan, forearm, gripOffsets = {} } = body.userCalibration;
-    const { gripDevice = null } = store.preferences;
-    const grip = gripDevice === null ? undefined : gripOffsets[gripDevice];
+    const { settings, body, stage, avatar, headset, recorder } = this.#parts;
+    const { eyeHeight, armSpan, forearm } = body.userCalibration;
     return {
       ...settings,
       estimator: body.selectedEstimator,
@@ -95,14 +92,7 @@ export class DesktopControls {
       armSpanCm: centimetres(fingertipSpanFromArmSpan(armSpan)),
       forearmCm: forearm === undefined ? null : centimetres(forearm),
       eyeHeightCm: centimetres(eyeHeight),
-      grip:
-        gripDevice === null
-          ? null
-          : {
-              device: gripDevice,
-              aheadCm: centimetres(grip?.ahead ?? 0),
-              leanDegrees: degrees(grip?.lean ?? 0),
-            },
+      grip: this.#actions.grip.state,
       emulated: headset.emulator !== null,
       inSession: headset.worn,
       inPassthrough: headset.passthrough !== null,

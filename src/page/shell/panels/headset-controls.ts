@@ -9,6 +9,7 @@ import type { StageParts } from '../stage/stage-parts';
 import type { PanelActions } from './panel-actions';
 import { type ComfortActions, comfortSheet } from './vr-menu/comfort-sheet';
 import { GazeOffer } from './vr-menu/gaze-offer';
+import { gripSheet } from './vr-menu/grip-sheet';
 import type { VrMenuActions, VrMenuState } from './vr-menu/menu-buttons';
 import { VrMenu } from './vr-menu/vr-menu';
 import { WristButtons } from './vr-menu/wrist-buttons';
@@ -31,7 +32,8 @@ export class HeadsetControls {
   readonly #comfort: UserHeight;
   readonly #gazes: Pointer[] = [];
   readonly #others: Pointer[] = [];
-  #comfortOpen = false;
+  /** The shell's own page in place of the menu; null: the menu itself. */
+  #open: 'comfort' | 'grip' | null = null;
   #worn = false;
 
   constructor(parts: InputParts, measuring: CalibrationControl, actions: PanelActions, rays: VrPointers) {
@@ -52,7 +54,7 @@ export class HeadsetControls {
   setWorn(worn: boolean): void {
     this.#worn = worn;
     this.#rays.objects.visible = worn;
-    this.#comfortOpen = false;
+    this.#open = null;
     this.#comfort.reset();
     this.#menu.sendBack();
     this.#wrists.hide();
@@ -71,7 +73,7 @@ export class HeadsetControls {
   show(): void {
     this.#showMenu();
     this.#menu.object.scale.setScalar(this.#parts.settings.largerText ? largerMenu : 1);
-    this.#menu.show(menuStateOf(this.#parts, this.#measuring, this.#comfortOpen ? this.#comfortSheet() : null));
+    this.#menu.show(menuStateOf(this.#parts, this.#measuring, this.#sheet()));
   }
 
   showReport(report: FrameReport): void {
@@ -132,6 +134,17 @@ export class HeadsetControls {
     return false;
   }
 
+  #sheet(): MenuSheet | null {
+    if (this.#open === null) return null;
+    return this.#open === 'comfort' ? this.#comfortSheet() : this.#gripSheet();
+  }
+
+  /** Null: the user holds no controller. */
+  #gripSheet(): MenuSheet | null {
+    const { grip } = this.#actions;
+    return grip.state && gripSheet(grip.state, grip, () => this.#openSheet(null));
+  }
+
   #comfortSheet() {
     const { settings, headset } = this.#parts;
     const { gaze, sound, largerText } = settings;
@@ -150,13 +163,13 @@ export class HeadsetControls {
       setGaze: (gaze) => writer.keep({ gaze }),
       setSound: (on) => activities.setSound(on),
       setLargerText: (largerText) => writer.keep({ largerText }),
-      close: () => this.#openComfort(false),
+      close: () => this.#openSheet(null),
     };
   }
 
-  #openComfort(open: boolean): void {
+  #openSheet(sheet: 'comfort' | 'grip' | null): void {
     this.#change(() => {
-      this.#comfortOpen = open;
+      this.#open = sheet;
     });
   }
 
@@ -174,7 +187,8 @@ export class HeadsetControls {
       calibrate: () => measuring.begin(),
       cancelCalibration: () => measuring.cancel(),
       recentre: () => this.#comfort.recentre(),
-      openComfort: () => this.#openComfort(true),
+      openComfort: () => this.#openSheet('comfort'),
+      openGrip: () => this.#openSheet('grip'),
       setOverlay: (on) => writer.change({ vrOverlay: on }),
       setPassthrough: (passthrough) => writer.keep({ passthrough }),
       setBeside: (beside) => writer.change({ beside }),
@@ -210,6 +224,7 @@ export function menuStateOf(
     inPassthrough: headset.passthrough !== null,
     builtInBody: settings.builtInBody,
     skinTone: settings.skinTone,
+    holdsControllers: Object.keys(headset.heldDevices ?? {}).length > 0,
     places: activities.all.map(({ name, title }) => ({ name, title })),
     activity,
     sheet: sheet ?? activity?.sheet ?? null,

@@ -13,10 +13,11 @@ import type { CalibrationControl } from '../input/calibration-control';
 import type { FileOpener } from '../input/file-opener';
 import type { Settings, StoredSettings } from '../session/settings';
 import type { StageParts } from '../stage/stage-parts';
+import { GripControl } from './grip-control';
 import type { MotionExport } from './motion-export';
-import type { ExportChoice, GripCorrection, PanelState } from './panel-state';
+import type { ExportChoice, PanelState } from './panel-state';
 
-function bodyActions({ store, body, notices, userCalibration, onChange }: StageParts, measuring: CalibrationControl) {
+function bodyActions({ store, body, notices, userCalibration }: StageParts, measuring: CalibrationControl) {
   return {
     chooseEstimator(name: EstimatorName) {
       store.remember({ estimator: name });
@@ -37,13 +38,6 @@ function bodyActions({ store, body, notices, userCalibration, onChange }: StageP
       else userCalibration.calibrateForGood(calibration, 'by hand');
     },
     resetCalibration: () => userCalibration.resetCalibration(),
-    correctGrip({ device, aheadCm, leanDegrees }: GripCorrection) {
-      const offset = { ahead: aheadCm / 100, lean: (leanDegrees * Math.PI) / 180 };
-      const gripOffsets = { ...body.userCalibration.gripOffsets, [device]: offset };
-      body.setGripOffsets(gripOffsets);
-      store.remember({ gripOffsets });
-      onChange();
-    },
   };
 }
 
@@ -132,6 +126,7 @@ export function createPanelActions(
     ...bodyActions(parts, measuring),
     ...avatarActions(parts, files),
     ...recordingActions(parts, files, motionExport),
+    grip: new GripControl(parts),
     change: (part: Partial<Settings>) => writer.change(part),
     keep: (part: StoredSettings) => writer.keep(part),
     chooseView(name: ViewName) {

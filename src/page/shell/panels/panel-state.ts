@@ -3,6 +3,7 @@ import type { SkeletonToMap } from '../../bones/skeleton-to-map';
 import type { ViewName } from '../../scene/desktop-view';
 import type { Recorder } from '../../studio/recorder';
 import type { Settings } from '../session/settings';
+import type { GripState } from './grip-control';
 
 /** What the recorder is doing; seconds since its start, of how many. */
 export type RecorderState = Pick<Recorder, 'mode' | 'paused' | 'seconds' | 'duration' | 'loop' | 'name'>;
@@ -21,14 +22,6 @@ export interface ExportState {
   /** Share [0, 1] that is done, and seconds for the rest; null: not known yet. */
   readonly fraction: number;
   readonly secondsLeft: number | null;
-}
-
-/** How the user holds the controllers of one device, compared with the average user. */
-export interface GripCorrection {
-  readonly device: string;
-  /** How much further ahead of the wrist [cm], and how much steeper [degrees] the controller is held. */
-  readonly aheadCm: number;
-  readonly leanDegrees: number;
 }
 
 /** Everything that the panel shows, the settings among it. The panel itself has no state. */
@@ -57,7 +50,7 @@ export interface PanelState extends Omit<Settings, 'palette' | 'builtInBody'> {
   readonly forearmCm: number | null;
   readonly eyeHeightCm: number;
   /** The correction of the controllers that were held last; null: none were. */
-  readonly grip: GripCorrection | null;
+  readonly grip: GripState | null;
   readonly emulated: boolean;
   readonly recorder: RecorderState;
   readonly exporting: ExportState | null;

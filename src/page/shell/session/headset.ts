@@ -22,6 +22,7 @@ import type { TrackedSession } from 'threepoint/webxr';
 import { type Emulator, installEmulator } from '../../emulator/emulator';
 import { type Quality, reduceEmulatedResolution } from '../../scene/renderer';
 import type { PageContext } from './page-context';
+import type { Preferences } from './preferences';
 
 /** The rate [Hz] at which a window, and the emulator in it, draws. */
 const windowRateHz = 60;
@@ -60,6 +61,16 @@ interface Session {
   readonly room: BoundarySize | null;
   readonly rates: FrameRateControl;
 }
+
+type HeldDevices = NonNullable<Preferences['gripDevices']>;
+
+/** Returns the controllers that hands hold, by the names of their offsets. */
+const heldDevices = (sources: Iterable<XRInputSource>): HeldDevices =>
+  Object.fromEntries(
+    [...sources].flatMap(({ hand, gripSpace, handedness, profiles }) =>
+      gripSpace && !hand && handedness !== 'none' ? [[handedness, gripDevice(profiles)]] : [],
+    ),
+  );
 
 /** The headset that is worn, real or emulated, and the session in it. */
 export class Headset {
@@ -113,6 +124,11 @@ export class Headset {
 
   get visibility(): XRVisibilityState | 'none' {
     return this.#session?.xr.visibilityState ?? 'none';
+  }
+
+  /** The controllers in the user's hands, by the names of their offsets; null: no headset is worn. */
+  get heldDevices(): HeldDevices | null {
+    return this.#session && heldDevices(this.#session.xr.inputSources);
   }
 
   get input(): TrackedSession['inputs']['input'] | null {
@@ -283,13 +299,10 @@ export class Headset {
   }
 
   /** Remembers which controllers are held: the panel corrects their grip, also after the session. */
-  #rememberGrip(sources: Iterable<XRInputSource>): void {
+  #rememberGrip(): void {
     const { store, changes } = this.#context;
-    for (const { hand, gripSpace, profiles } of sources) {
-      if (!gripSpace || hand) continue;
-      store.remember({ gripDevice: gripDevice(profiles) });
-      changes.emit();
-    }
+    store.remember({ gripDevices: { ...store.preferences.gripDevices, ...this.heldDevices } });
+    changes.emit();
   }
 
   /** Follows the session until it ends. */
@@ -307,8 +320,8 @@ export class Headset {
       this.#listener?.visibilityChanged();
     });
     xr.addEventListener('frameratechange', () => this.#listener?.rateChanged());
-    xr.addEventListener('inputsourceschange', ({ added }) => this.#rememberGrip(added));
-    this.#rememberGrip(xr.inputSources);
+    xr.addEventListener('inputsourceschange', () => this.#rememberGrip());
+    this.#rememberGrip();
     if (!this.#context.settings.actor) this.#emulator?.release();
   }
 

@@ -4,10 +4,10 @@ import {
   boneNames,
   builtInBodies,
   calibrationProblem,
+  defaultCalibration,
   estimatorNames,
+  handleFitParts,
   handTiltsSchema,
-  largestGripOffset,
-  numberBetween,
   skinTones,
 } from 'threepoint/core';
 import * as v from 'valibot';
@@ -23,11 +23,11 @@ const calibration = v.pipe(
   v.check((measures) => calibrationProblem(measures) === null, 'no person has these measurements'),
 );
 
-/** The largest offsets of grips [m, rad]. */
-const { ahead, lean } = largestGripOffset;
-const gripOffsets = v.record(
-  v.pipe(v.string(), v.maxLength(100)),
-  v.object({ ahead: numberBetween(-ahead, ahead), lean: numberBetween(-lean, lean) }),
+const gripDevice = v.pipe(v.string(), v.maxLength(100));
+const gripOffset = v.optional(v.record(v.picklist(handleFitParts), v.optional(v.number())));
+const gripOffsets = v.pipe(
+  v.record(gripDevice, v.object({ left: gripOffset, right: gripOffset })),
+  v.check((offsets) => calibrationProblem({ ...defaultCalibration, gripOffsets: offsets }) === null, 'too far'),
 );
 
 const boneName = v.custom<BoneName>(
@@ -44,8 +44,8 @@ const schema = v.object({
   calibration: v.optional(calibration),
   /** The user's corrections of how they hold controllers, by device; not part of a calibration that is reset. */
   gripOffsets: v.optional(gripOffsets),
-  /** The device that was held last, which the panel corrects. */
-  gripDevice: v.optional(v.pipe(v.string(), v.maxLength(100))),
+  /** The device that each hand held last, which the panel corrects. */
+  gripDevices: v.optional(v.object({ left: v.optional(gripDevice), right: v.optional(gripDevice) })),
   estimator: v.optional(v.picklist(estimatorNames)),
   palette: v.optional(v.pipe(v.string(), v.maxLength(32))),
   builtInBody: v.optional(v.picklist(builtInBodies)),

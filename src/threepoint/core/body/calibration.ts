@@ -1,20 +1,34 @@
-import { sides } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { type HandTilts, isPlausibleTilt, steepestHandTilt } from './hand-tilt';
 import type { TrackerOffsets } from './tracker-offsets';
 
-/** A user's correction of how they hold a controller. */
-export interface GripOffset {
-  /** How much further ahead of the wrist the middle of the fist lies [m]; below 0: nearer. */
+/**
+ * The fit of a controller in a hand: where its grip lies, as seen from the wrist of a hand with its palm down. One fit
+ * serves both hands, mirrored.
+ */
+export interface HandleFit {
+  /** The middle of the fist from the wrist [m]: towards the knuckles, under the back, and towards the thumb's side. */
   readonly ahead: number;
-  /** How much further the handle leans towards the fingers [rad]. */
+  readonly below: number;
+  readonly thumbward: number;
+  /** The lean of the handle's thumb end towards the fingers [rad]; at 0 the handle crosses the palm. */
   readonly lean: number;
+  /** The turn of the controller [rad] that raises the side of the fingers, and the one that raises the thumb's side. */
+  readonly pitch: number;
+  readonly roll: number;
 }
 
-/** The corrections by device: the first known name of an input source's profiles. */
-export type GripOffsets = Readonly<Record<string, GripOffset>>;
+/** The parts of a fit. */
+export const handleFitParts = ['ahead', 'below', 'thumbward', 'lean', 'pitch', 'roll'] as const;
+
+/** A user's correction of how they hold a controller, which is added to its fit; absent: 0. */
+export type GripOffset = { readonly [Part in (typeof handleFitParts)[number]]?: number | undefined };
+
+/** The corrections by device, which is the first known name of an input source's profiles, and by hand. */
+export type GripOffsets = Readonly<Record<string, { readonly [Hand in Side]?: GripOffset | undefined }>>;
 
 /** The largest corrections [m, rad]. */
-export const largestGripOffset: GripOffset = { ahead: 0.1, lean: Math.PI / 3 };
+export const largestGripOffset: HandleFit = { ahead: 0.1, below: 0.1, thumbward: 0.1, lean: 1, pitch: 1, roll: 1 };
 
 /** The measures of a body, entered by the user or measured while they stand still for two seconds. */
 export interface Calibration {
@@ -184,10 +198,14 @@ function tiltProblem({ gazePitch = 0, handTilts }: Calibration): string | null {
 
 /** Returns why the offsets of grips are implausible; null: they are plausible. */
 function gripProblem({ gripOffsets = {} }: Calibration): string | null {
-  const { ahead, lean } = largestGripOffset;
-  for (const [device, offset] of Object.entries(gripOffsets)) {
-    if (Math.abs(offset.ahead) <= ahead && Math.abs(offset.lean) <= lean) continue;
-    return `The offset of ${device} exceeds ${metres(ahead)} or ${lean.toFixed(2)} rad.`;
+  for (const [device, hands] of Object.entries(gripOffsets)) {
+    for (const [hand, offset = {}] of Object.entries<GripOffset | undefined>(hands)) {
+      const fits = Object.entries(offset).every(
+        ([part, value = 0]) => Math.abs(value) <= largestGripOffset[part as keyof HandleFit],
+      );
+      if (fits && sides.includes(hand as Side)) continue;
+      return `The offset of ${device} is not { left, right } of at most 0.1 m and 1 rad.`;
+    }
   }
   return null;
 }

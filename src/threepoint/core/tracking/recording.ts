@@ -1,10 +1,11 @@
-import type { Calibration, GripOffsets } from '../body/calibration';
+import { type Calibration, type GripOffset, type GripOffsets, handleFitParts } from '../body/calibration';
 import { type Fingers, fingerNames, type HandShape, lerpHandShape, limitBend, makeHandShape } from '../body/hand-shape';
 import type { HandTilts } from '../body/hand-tilt';
 import { isFiniteNumber, isObject } from '../json';
 import { clamp } from '../math/damper';
 import type { TrackedPose } from '../math/pose';
 import { slerp } from '../math/quat';
+import { sides } from '../math/side';
 import { lerp } from '../math/vec3';
 import { type DeviceBody, deviceBodySize, deviceJointNames, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
@@ -160,12 +161,18 @@ function parseHandTilts(value: unknown): HandTilts | null {
   return left || right ? { ...(left && { left }), ...(right && { right }) } : null;
 }
 
+function parseGripOffset(value: unknown): GripOffset {
+  if (!isObject(value)) return {};
+  return Object.fromEntries(
+    handleFitParts.flatMap((part) => (isFiniteNumber(value[part]) ? [[part, value[part]]] : [])),
+  );
+}
+
 function parseGripOffsets(value: unknown): GripOffsets | null {
   if (!isObject(value)) return null;
-  const offsets = Object.entries(value).flatMap(([device, offset]) => {
-    if (!isObject(offset)) return [];
-    const { ahead, lean } = offset;
-    return isFiniteNumber(ahead) && isFiniteNumber(lean) ? [[device, { ahead, lean }] as const] : [];
+  const offsets = Object.entries(value).map(([device, hands]) => {
+    const held = isObject(hands) ? sides.flatMap((side) => (side in hands ? [[side, hands[side]] as const] : [])) : [];
+    return [device, Object.fromEntries(held.map(([side, offset]) => [side, parseGripOffset(offset)]))];
   });
   return Object.fromEntries(offsets);
 }

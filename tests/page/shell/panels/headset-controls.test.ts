@@ -410,6 +410,7 @@ describe('the buttons of the menu', () => {
     cancelCalibration: () => undefined,
     recentre: () => undefined,
     openComfort: () => void done.push('comfort'),
+    openGrip: () => void done.push('grip'),
     setOverlay: (on) => void done.push(`overlay ${on}`),
     setPassthrough: (on) => void done.push(`next in the room ${on}`),
     setBeside: (on) => void done.push(`beside ${on}`),

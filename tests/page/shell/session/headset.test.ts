@@ -65,6 +65,8 @@ async function page(draw: () => Promise<void> = () => Promise.resolve()) {
   const context = fake<PageContext>({
     switches: { emulate: false },
     settings: { actor: true, emulatorPanel: false, deviceBody: false },
+    store: { preferences: {}, remember: () => undefined },
+    changes: { emit: () => undefined },
     notices: { show: (_: unknown, text: string) => void told.push(text), withdraw: () => undefined },
   });
   const renderer = { xr: { setSession: draw, getReferenceSpace: () => new EventTarget() } };

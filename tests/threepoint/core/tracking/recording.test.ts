@@ -50,7 +50,7 @@ const recording: fc.Arbitrary<Recording> = fc.record({
         forearm: number(0.2, 0.3),
         gazePitch: evenly(-0.2, 0.2),
         handTilts: fc.record({ left: tilt, right: tilt }, { requiredKeys: ['left'] }),
-        gripOffsets: fc.constant({ 'valve-index': { ahead: 0.01, lean: -0.1 } }),
+        gripOffsets: fc.constant({ 'valve-index': { right: { ahead: 0.01, roll: -0.1 } } }),
       },
       { requiredKeys: ['eyeHeight', 'armSpan'] },
     ),

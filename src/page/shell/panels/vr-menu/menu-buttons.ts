@@ -38,6 +38,8 @@ export interface VrMenuState {
   readonly builtInBody: BuiltInBody;
   /** The skin tone of a human avatar; undefined: the avatar's own. */
   readonly skinTone: SkinTone | undefined;
+  /** The user holds controllers, whose grip can be corrected. */
+  readonly holdsControllers: boolean;
   /** The activities that the user can go to, with the labels of their buttons. */
   readonly places: readonly { readonly name: string; readonly title: string }[];
   /** The part of the current activity; null: the user is at the mirror. */
@@ -54,6 +56,7 @@ export interface VrMenuActions {
   cancelCalibration(): void;
   recentre(): void;
   openComfort(): void;
+  openGrip(): void;
   setOverlay(on: boolean): void;
   setPassthrough(on: boolean): void;
   setBeside(on: boolean): void;
@@ -124,6 +127,7 @@ export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonl
     { id: 'calibrate', label: 'Calibrate', act: () => actions.calibrate() },
     { id: 'recentre', label: 'Centre', act: () => actions.recentre() },
     { id: 'comfort', label: 'Comfort', act: () => actions.openComfort() },
+    ...(state.holdsControllers ? [{ id: 'grip', label: 'My grip', act: () => actions.openGrip() }] : []),
     { id: 'overlay', label: overlay, act: () => actions.setOverlay(!state.overlay) },
     { id: 'exit', label: exitLabel(state.inPassthrough), act: () => actions.exit() },
     ...placeEntries(state, actions),
