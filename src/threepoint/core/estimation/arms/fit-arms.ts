@@ -8,6 +8,7 @@ import {
   makeElbowCircle,
   softenedReach,
 } from '../../body/two-bone-ik';
+import { wrapAngle } from '../../math/angle';
 import { clamp } from '../../math/damper';
 import {
   conjugate,
@@ -15,7 +16,6 @@ import {
   limitAngle,
   type MutableQuat,
   multiply,
-  type Quat,
   quat,
   rotate,
   rotateInverse,
@@ -182,8 +182,10 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   normalise(subtract(elbow, wanted.shoulder, wanted.upperArm), undefined, wanted.upperArm);
   normalise(subtract(wrist, elbow, wanted.forearm), undefined, wanted.forearm);
   elbowHinge(pole, circle.axis, wanted.hinge);
-  rotate(floorFromChest, viaDirection[side], wanted.outside);
-  if (jumped) startTransition(state.transition, state.drawn, wanted);
+  if (jumped) {
+    rotate(floorFromChest, viaDirection[side], wanted.outside);
+    startTransition(state.transition, state.drawn, wanted);
+  }
   if (state.known) followTransition(state.transition, wanted, state.drawn, deltaSeconds);
   else copyArmDirections(wanted, state.drawn);
 
@@ -244,39 +246,34 @@ function wristTarget(
 
 /**
  * Writes the bones' rotations from their directions and the hand's. The forearm takes half of the hand's twist, which
- * spares the wrist.
+ * spares the wrist; swing and twist of the hand are limited to the wrist's range against the forearm.
  */
 function turnBones(side: Side, state: ArmState, deltaSeconds: number): void {
   const { drawn, rotations } = state;
   const along = alongArm[side];
   armBoneRotation(side, drawn.upperArm, drawn.hinge, rotations.upperArm);
   armBoneRotation(side, drawn.forearm, drawn.hinge, untwisted);
-  turnForearm(state, along, deltaSeconds);
-  multiply(untwisted, fromAxisAngle(along, state.forearmTwist, twist), rotations.lowerArm);
-  limitWrist(rotations.lowerArm, along, rotations.hand);
+  multiply(conjugate(untwisted, inverse), hand, inForearm);
+  const raw = twistAngle(twistOf(inForearm, along, twist), along);
+  // The swing is the rotation without its twist.
+  multiply(inForearm, conjugate(twist, inverse), inForearm);
+  turnForearm(state, raw, deltaSeconds);
+  const { forearmTwist } = state;
+  multiply(untwisted, fromAxisAngle(along, forearmTwist, twist), rotations.lowerArm);
+  multiply(untwisted, limitAngle(inForearm, wristLimit, inForearm), rotations.hand);
+  const wristTwist = clamp(wrapAngle(raw - forearmTwist), -wristLimit, wristLimit);
+  multiply(rotations.hand, fromAxisAngle(along, forearmTwist + wristTwist, twist), rotations.hand);
 }
 
 /**
- * Returns half of the hand's twist about the forearm: unwrapped, so that it does not flip at a half turn, and limited
- * in speed.
+ * Updates the forearm's twist: half of the hand's (`raw`, about the forearm), unwrapped, so that it does not flip at a
+ * half turn, and limited in speed.
  */
-function turnForearm(state: ArmState, along: Vec3, deltaSeconds: number): void {
-  multiply(conjugate(untwisted, inverse), hand, inForearm);
-  const raw = twistAngle(twistOf(inForearm, along, twist), along);
+function turnForearm(state: ArmState, raw: number, deltaSeconds: number): void {
   state.twist = unwrapTwist(raw, state.known ? state.twist : 0);
   const half = clamp(state.twist, -Math.PI, Math.PI) / 2;
   const most = forearmSpeed * Math.max(deltaSeconds, 0);
   state.forearmTwist = state.known ? clamp(half, state.forearmTwist - most, state.forearmTwist + most) : half;
-}
-
-/** Writes the hand's rotation, limited to the wrist's range against the forearm. */
-function limitWrist(lowerArm: Quat, along: Vec3, target: MutableQuat): void {
-  multiply(conjugate(lowerArm, inverse), hand, inForearm);
-  twistOf(inForearm, along, twist);
-  // The swing is the rotation without its twist.
-  multiply(inForearm, conjugate(twist, inverse), inForearm);
-  multiply(limitAngle(inForearm, wristLimit, inForearm), limitAngle(twist, wristLimit, twist), target);
-  multiply(lowerArm, target, target);
 }
 
 export function resetFitArms(state: FitArmsState): void {
