@@ -197,12 +197,7 @@ const inBody = makePose<'body'>();
 const inverse = quat(0, 0, 0, 1);
 const turn = quat(0, 0, 0, 1);
 
-function followSeen(
-  state: HandState,
-  tracked: TrackedPose,
-  floorFromBody: Transform<'floor', 'body'>,
-  deltaSeconds: number,
-): void {
+function followSeen(state: HandState, tracked: TrackedPose, deltaSeconds: number): void {
   const { hand } = state;
   hand.jumped = state.known && state.lostSeconds >= 0;
   if (!state.known) hand.confidence = 1;
@@ -215,9 +210,15 @@ function followSeen(
   copyQuat(tracked.orientation, hand.orientation);
   copyPose(hand, hand.goal);
   state.lostSeconds = -1;
-  untransformPoint(floorFromBody, tracked.position, inBody.position);
-  multiply(conjugate(floorFromBody.orientation, inverse), tracked.orientation, inBody.orientation);
-  reachOf(inBody, shoulder, state.last);
+}
+
+/** Stores where a hand was in the frame before, in which it was still seen, and in that frame's body frame. */
+function storeLastReach(state: CompleteHandsState, side: Side, body: ChestSpaceBody): void {
+  const { floorFromBody, frame } = state;
+  const { hand, last } = state[side];
+  untransformPoint(floorFromBody, hand.position, inBody.position);
+  multiply(conjugate(floorFromBody.orientation, inverse), hand.orientation, inBody.orientation);
+  reachOf(inBody, uprightShoulder(side, frame.headJoint.y, body, shoulder), last);
 }
 
 /** Updates a lost hand: held, then moving on an arc about its shoulder to rest. */
@@ -262,9 +263,11 @@ function completeHand(
 ): void {
   const { floorFromBody } = state;
   const { y } = state.frame.headJoint;
-  uprightShoulder(side, y, body, shoulder);
-  if (isTracked(tracked)) followSeen(state[side], tracked, floorFromBody, deltaSeconds);
-  else followLost(state[side], side, restingHand(side, y, body, rest), floorFromBody, deltaSeconds);
+  if (isTracked(tracked)) followSeen(state[side], tracked, deltaSeconds);
+  else {
+    uprightShoulder(side, y, body, shoulder);
+    followLost(state[side], side, restingHand(side, y, body, rest), floorFromBody, deltaSeconds);
+  }
   state[side].known = true;
 }
 
@@ -280,6 +283,8 @@ export function completeHands(
   deltaSeconds: number,
 ): CompletedFrame {
   const { frame, floorFromBody } = state;
+  if (state.left.lostSeconds < 0 && !isTracked(leftHand)) storeLastReach(state, 'left', body);
+  if (state.right.lostSeconds < 0 && !isTracked(rightHand)) storeLastReach(state, 'right', body);
   frame.head = head;
   headJointOf(head, body.eyesInHead, frame.headJoint);
   setVec3(floorFromBody.position, frame.headJoint.x, 0, frame.headJoint.z);

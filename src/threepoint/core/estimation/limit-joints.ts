@@ -1,6 +1,6 @@
 import { type EstimatedJoint, estimatedJoints } from '../body/joints';
 import { rotate } from '../math/quat';
-import { add, copyVec3, distance, lerp, subtract, vec3 } from '../math/vec3';
+import { add, copyVec3, distance, lerp, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
 import { type JointPositions, type MutableJointPositions, makeJoints, mapJoints } from './joint-positions';
 import smoothing from './smoothing.json' with { type: 'json' };
@@ -30,6 +30,14 @@ const carried = vec3(0, 0, 0);
 /** Returns the confidence that this hand causes no jump; 1 for a lost hand, because its guess moves slowly. */
 const steadiness = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
 
+/** Moves `wanted` to at most this far [m] from `carried`; returns whether it was further. */
+function approach(carried: Vec3, wanted: MutableVec3, most: number): boolean {
+  const far = distance(wanted, carried);
+  if (far <= most) return false;
+  lerp(carried, wanted, most / far, wanted);
+  return true;
+}
+
 /**
  * Limits the speed of the joints (stage 4), floor frame. Estimates jump without motion of the person when a lost hand
  * is reacquired elsewhere, and under a head on its side, whose heading is independent of the body's. Then, until the
@@ -50,12 +58,10 @@ export function limitJoints(
     const joint = estimatedJoints[index]!;
     const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
     subtract(joints[joint], head.position, wanted);
-    rotate(bodyTurn, relative[joint], carried);
-    const far = distance(wanted, carried);
-    catchingUp[joint] = state.known && !hand?.jumped && (confidence < 1 || catchingUp[joint]) && far > most;
-    if (catchingUp[joint]) lerp(carried, wanted, most / far, relative[joint]);
-    else copyVec3(wanted, relative[joint]);
-    add(head.position, relative[joint], state.joints[joint]);
+    const doubtful = state.known && !hand?.jumped && (confidence < 1 || catchingUp[joint]);
+    catchingUp[joint] = doubtful && approach(rotate(bodyTurn, relative[joint], carried), wanted, most);
+    copyVec3(wanted, relative[joint]);
+    add(head.position, wanted, state.joints[joint]);
   }
   state.known = true;
   return state.joints;

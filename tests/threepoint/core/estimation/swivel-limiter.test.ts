@@ -3,6 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { elbowCircle, elbowOnCircle, makeElbowCircle } from '../../../../src/threepoint/core/body/two-bone-ik';
 import {
   type EstimatedPole,
+  elbowSpeed,
   estimatedPole,
   limitSwivel,
 } from '../../../../src/threepoint/core/estimation/arms/swivel-limiter';
@@ -48,7 +49,8 @@ interface Turning {
 
 /** Returns the elbow's direction in each frame when its estimate jumps from one side to the other. */
 function turning(from: Vec3, to: Vec3, { confidence = 1, rateHz = 60, seconds, hand = wrist }: Turning): Vec3[] {
-  const context = { side: 'right', torso: upright, headJoint, wrist: hand, armLength: 0.54, confidence } as const;
+  const longestStep = elbowSpeed / rateHz;
+  const context = { side: 'right', torso: upright, headJoint, longestStep, armLength: 0.54, confidence } as const;
   const own = circleTo(hand);
   let pole = limitSwivel(null, poleTowards(from, hand), own, { ...context, deltaSeconds: 0 }, vec3(0, 0, 0));
   const poles = [pole];

@@ -1,4 +1,11 @@
-import { alongArm, armBoneRotation, elbowHinge, handBoneRotation, unwrapTwist } from '../../body/arm-rotations';
+import {
+  alongArm,
+  armBoneRotation,
+  clavicleRoot,
+  elbowHinge,
+  handBoneRotation,
+  unwrapTwist,
+} from '../../body/arm-rotations';
 import { armBonesOf, type Skeleton } from '../../body/skeleton';
 import {
   type ElbowCircle,
@@ -6,8 +13,10 @@ import {
   elbowOnCircle,
   type LimbBones,
   makeElbowCircle,
+  poleAcross,
   softenedReach,
 } from '../../body/two-bone-ik';
+import { wrapAngle } from '../../math/angle';
 import { clamp } from '../../math/damper';
 import {
   conjugate,
@@ -15,19 +24,21 @@ import {
   limitAngle,
   type MutableQuat,
   multiply,
-  type Quat,
   quat,
   rotate,
   rotateInverse,
+  rotationBetween,
   twistAngle,
   twistOf,
 } from '../../math/quat';
 import type { Side } from '../../math/side';
 import {
+  add,
   addScaled,
   backward,
   copyVec3,
   distance,
+  length,
   type MutableVec3,
   normalise,
   subtract,
@@ -38,8 +49,9 @@ import {
 import type { Mutable } from '../../records';
 import type { CompletedFrame, CompletedHand } from '../complete-hands';
 import type { JointPositions } from '../joint-positions';
+import limits from '../kinematic-limits.json' with { type: 'json' };
 import lostHand from '../lost-hand.json' with { type: 'json' };
-import type { TorsoPose } from '../trunk/fit-torso';
+import { placeShoulder, type TorsoPose } from '../trunk/fit-torso';
 import {
   type ArmDirections,
   type ArmGoal,
@@ -51,9 +63,17 @@ import {
   startTransition,
 } from './arm-transition';
 import { viaDirection } from './direction-arc';
-import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelContext, type SwivelState } from './swivel-limiter';
+import {
+  type EstimatedPole,
+  elbowSpeed,
+  estimatedPole,
+  limitSwivel,
+  type SwivelContext,
+  type SwivelState,
+} from './swivel-limiter';
 
 const { restSeconds } = lostHand;
+const { torso: torsoLimits } = limits;
 
 /** The largest bend of a wrist relative to the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
@@ -97,15 +117,20 @@ const makeArmState = (): ArmState => ({
 
 export const makeFitArmsState = (): FitArmsState => ({ left: makeArmState(), right: makeArmState() });
 
-/** Returns the bone lengths of the right arm, which are used for both arms [m]. */
-export const armBones = (skeleton: Skeleton): LimbBones => armBonesOf(skeleton, 'right');
+/** The bone lengths of both arms [m], and the skeleton that has their clavicles. */
+interface ArmBones extends LimbBones {
+  readonly skeleton: Skeleton;
+}
+
+/** Returns the bone lengths of the right arm, which are used for both arms. */
+export const armBones = (skeleton: Skeleton): ArmBones => ({ ...armBonesOf(skeleton, 'right'), skeleton });
 
 /** The input of both arms in one frame, floor frame. */
 interface ArmsInput {
   readonly frame: CompletedFrame;
   readonly joints: JointPositions;
   readonly torso: TorsoPose;
-  readonly bones: LimbBones;
+  readonly bones: ArmBones;
   /** The directions of IK's elbows, for arms without an estimate. */
   readonly poles: Readonly<Record<Side, Vec3>>;
 }
@@ -136,7 +161,7 @@ const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose 
   side: 'left',
   torso: null,
   headJoint: zero,
-  wrist: zero,
+  longestStep: Number.NaN,
   armLength: Number.NaN,
   confidence: Number.NaN,
   deltaSeconds: Number.NaN,
@@ -149,6 +174,10 @@ const wanted: Mutable<ArmGoal> & { readonly outside: MutableVec3 } = {
   bones: { upper: Number.NaN, lower: Number.NaN },
   outside: vec3(0, 0, 0),
 };
+// Scratch of `letShoulderYield`.
+const elbowBefore = vec3(0, 0, 0);
+const fromWrist = vec3(0, 0, 0);
+const clavicle = { root: vec3(0, 0, 0), upper: Number.NaN, lower: Number.NaN };
 const untwisted = quat(0, 0, 0, 1);
 const hand = quat(0, 0, 0, 1);
 const inverse = quat(0, 0, 0, 1);
@@ -182,8 +211,10 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   normalise(subtract(elbow, wanted.shoulder, wanted.upperArm), undefined, wanted.upperArm);
   normalise(subtract(wrist, elbow, wanted.forearm), undefined, wanted.forearm);
   elbowHinge(pole, circle.axis, wanted.hinge);
-  rotate(floorFromChest, viaDirection[side], wanted.outside);
-  if (jumped) startTransition(state.transition, state.drawn, wanted);
+  if (jumped) {
+    rotate(floorFromChest, viaDirection[side], wanted.outside);
+    startTransition(state.transition, state.drawn, wanted);
+  }
   if (state.known) followTransition(state.transition, wanted, state.drawn, deltaSeconds);
   else copyArmDirections(wanted, state.drawn);
 
@@ -217,14 +248,47 @@ function bendArm(
   estimated.wrist = completed.position;
   ikPoles[0] = poles[side];
   estimatedPole(estimated, circle, ikPoles, wantedPole);
+  const handStep = before ? distance(subtract(wrist, frame.headJoint, fromWrist), before.wrist) : 0;
+  const longestStep = handStep + elbowSpeed * Math.max(deltaSeconds, 0);
   swivelContext.side = side;
   swivelContext.torso = torso;
   swivelContext.headJoint = frame.headJoint;
-  swivelContext.wrist = wrist;
+  swivelContext.longestStep = longestStep;
   swivelContext.armLength = armLength;
   swivelContext.confidence = completed.confidence;
   swivelContext.deltaSeconds = deltaSeconds;
   limitSwivel(before, wantedPole, circle, swivelContext as SwivelContext, pole);
+  elbowOnCircle(circle, pole, elbow);
+  if (before) letShoulderYield(side, add(frame.headJoint, before.elbow, elbowBefore), longestStep, torso, bones);
+}
+
+/**
+ * Lets the shoulder yield to a hand next to it, which turns the arm's line over within a frame. An elbow whose circle
+ * is further than `longestStep` [m] from its former place moves about the wrist as far as it may, and the clavicle
+ * swings to the upper arm's end. A hand closer to the shoulder than the bones fold is reached in the same way. Beyond
+ * the clavicle's range the bones move the elbow.
+ */
+function letShoulderYield(side: Side, elbowBefore: Vec3, longestStep: number, torso: TorsoPose, bones: ArmBones): void {
+  const { wrist, circle, elbow, pole } = bent;
+  const shoulder = torso.shoulders[side];
+  const span = distance(shoulder, wrist);
+  if (span > circle.span || (span === circle.span && distance(elbow, elbowBefore) <= longestStep)) return;
+  const { upper, lower } = bones;
+  const far = length(subtract(elbowBefore, wrist, fromWrist));
+  // The places of an elbow within the step are a cap of the sphere about the wrist, around its former direction.
+  const cosine = (far * far + lower * lower - longestStep * longestStep) / Math.max(2 * far * lower, 1e-9);
+  rotationBetween(fromWrist, subtract(elbow, wrist, elbow), twist);
+  rotate(limitAngle(twist, Math.acos(clamp(cosine, -1, 1)), twist), fromWrist, elbow);
+  addScaled(wrist, normalise(elbow, undefined, elbow), lower, elbow);
+
+  const root = clavicleRoot(side, torso.neck, torso.rotations.upperChest, bones.skeleton, clavicle.root);
+  clavicle.upper = distance(shoulder, root);
+  clavicle.lower = upper;
+  elbowCircle(root, elbow, clavicle, fallbackPoles[0], circle);
+  poleAcross(circle.axis, subtract(shoulder, root, pole), fallbackPoles, pole);
+  placeShoulder(side, torso, bones, elbowOnCircle(circle, pole, pole), torsoLimits.clavicleSwing);
+  elbowCircle(shoulder, wrist, bones, fallbackPoles[0], circle);
+  poleAcross(circle.axis, subtract(elbow, shoulder, pole), fallbackPoles, pole);
   elbowOnCircle(circle, pole, elbow);
 }
 
@@ -244,39 +308,34 @@ function wristTarget(
 
 /**
  * Writes the bones' rotations from their directions and the hand's. The forearm takes half of the hand's twist, which
- * spares the wrist.
+ * spares the wrist; swing and twist of the hand are limited to the wrist's range against the forearm.
  */
 function turnBones(side: Side, state: ArmState, deltaSeconds: number): void {
   const { drawn, rotations } = state;
   const along = alongArm[side];
   armBoneRotation(side, drawn.upperArm, drawn.hinge, rotations.upperArm);
   armBoneRotation(side, drawn.forearm, drawn.hinge, untwisted);
-  turnForearm(state, along, deltaSeconds);
-  multiply(untwisted, fromAxisAngle(along, state.forearmTwist, twist), rotations.lowerArm);
-  limitWrist(rotations.lowerArm, along, rotations.hand);
+  multiply(conjugate(untwisted, inverse), hand, inForearm);
+  const raw = twistAngle(twistOf(inForearm, along, twist), along);
+  // The swing is the rotation without its twist.
+  multiply(inForearm, conjugate(twist, inverse), inForearm);
+  turnForearm(state, raw, deltaSeconds);
+  const { forearmTwist } = state;
+  multiply(untwisted, fromAxisAngle(along, forearmTwist, twist), rotations.lowerArm);
+  multiply(untwisted, limitAngle(inForearm, wristLimit, inForearm), rotations.hand);
+  const wristTwist = clamp(wrapAngle(raw - forearmTwist), -wristLimit, wristLimit);
+  multiply(rotations.hand, fromAxisAngle(along, forearmTwist + wristTwist, twist), rotations.hand);
 }
 
 /**
- * Returns half of the hand's twist about the forearm: unwrapped, so that it does not flip at a half turn, and limited
- * in speed.
+ * Updates the forearm's twist: half of the hand's (`raw`, about the forearm), unwrapped, so that it does not flip at a
+ * half turn, and limited in speed.
  */
-function turnForearm(state: ArmState, along: Vec3, deltaSeconds: number): void {
-  multiply(conjugate(untwisted, inverse), hand, inForearm);
-  const raw = twistAngle(twistOf(inForearm, along, twist), along);
+function turnForearm(state: ArmState, raw: number, deltaSeconds: number): void {
   state.twist = unwrapTwist(raw, state.known ? state.twist : 0);
   const half = clamp(state.twist, -Math.PI, Math.PI) / 2;
   const most = forearmSpeed * Math.max(deltaSeconds, 0);
   state.forearmTwist = state.known ? clamp(half, state.forearmTwist - most, state.forearmTwist + most) : half;
-}
-
-/** Writes the hand's rotation, limited to the wrist's range against the forearm. */
-function limitWrist(lowerArm: Quat, along: Vec3, target: MutableQuat): void {
-  multiply(conjugate(lowerArm, inverse), hand, inForearm);
-  twistOf(inForearm, along, twist);
-  // The swing is the rotation without its twist.
-  multiply(inForearm, conjugate(twist, inverse), inForearm);
-  multiply(limitAngle(inForearm, wristLimit, inForearm), limitAngle(twist, wristLimit, twist), target);
-  multiply(lowerArm, target, target);
 }
 
 export function resetFitArms(state: FitArmsState): void {

@@ -33,7 +33,7 @@ const swivelSpeed = 12;
 /** The highest speed of the swivel [rad/s] of a guessed hand. */
 const guessedSwivelSpeed = 5;
 /** The highest speed of an elbow about the head [m/s] in addition to the hand's own motion. */
-const elbowSpeed = 2;
+export const elbowSpeed = 2;
 /** The longest half-life [s] of the swivel angle, where its estimate is uncertain about the side of the elbow. */
 const swivelHalfLife = 0.35;
 /**
@@ -43,11 +43,6 @@ const swivelHalfLife = 0.35;
 const definedPole = 0.04;
 /** Confidence in the arm's axis rises from 0 to 1 between these wrist distances from the shoulder [arm lengths]. */
 const [handAtShoulder, handAway] = [0.1, 0.3];
-/**
- * The spin of the arm's axis counts from 0 to 1 between these speeds of an elbow that it carries along [fraction of the
- * highest]. Noise of a hand at rest stays below.
- */
-const [stillAxis, spinningAxis] = [0.05, 0.2];
 
 /** The state of an elbow that keeps it from flipping, chest frame. */
 export interface SwivelState {
@@ -88,9 +83,10 @@ export function estimatedPole(
 export interface SwivelContext {
   readonly side: Side;
   readonly torso: TorsoPose;
-  /** The head joint and the wrist, floor frame. */
+  /** The head joint, floor frame. */
   readonly headJoint: Vec3;
-  readonly wrist: Vec3;
+  /** The longest step of the elbow about the head in this frame [m]. */
+  readonly longestStep: number;
   /** Upper arm and forearm together [m]. */
   readonly armLength: number;
   /** The confidence in the hand, in [0, 1]: elbows of guessed hands turn slower. */
@@ -124,7 +120,6 @@ const axes: SwivelAxes = { zero: vec3(0, 0, 0), quarter: vec3(0, 0, 0) };
 const clear: ClearRange = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
 const reached: ReachedRange = { nearest: 0.5, furthest: 0.5 };
 const carried = vec3(0, 0, 0);
-const spinAxis = vec3(0, 0, 0);
 const fromHead = vec3(0, 0, 0);
 
 /** Writes the axes for an arm along `axis`; for an arm along the chest's side axis, `zero` is backward. */
@@ -144,20 +139,6 @@ function poleAt(angle: number, { zero, quarter }: SwivelAxes, target: MutableVec
 }
 
 /**
- * Writes the axis about which the arm's line spins in this frame, and returns in [0, 1] how much an elbow has to seek
- * it. With a wrist next to the shoulder the line turns faster than an elbow follows, except on the axis of spin.
- * `axisBefore`: the arm's axis in the frame before, floor frame. `longestStep`: of the elbow [m].
- */
-function spinOf(axisBefore: Vec3, { axis, radius, span }: ElbowCircle, armLength: number, longestStep: number): number {
-  cross(axisBefore, axis, spinAxis);
-  const sine = length(spinAxis);
-  if (sine < 1e-9) return 0;
-  const far = Math.atan2(sine, dot(axisBefore, axis)) * radius;
-  const near = 1 - smoothstep(handAtShoulder * armLength, handAway * armLength, span);
-  return near * smoothstep(stillAxis, spinningAxis, far / longestStep);
-}
-
-/**
  * Writes the direction of the elbow: it follows the estimate around the outside of the trunk, with limited speed, and
  * slowly if the estimate is uncertain. The previous direction (null: none) is transported with the arm. The first frame
  * uses the estimate, moved out of the trunk.
@@ -169,35 +150,28 @@ export function limitSwivel(
   context: SwivelContext,
   target: MutableVec3,
 ): MutableVec3 {
-  const { side, torso, headJoint, armLength, confidence, deltaSeconds } = context;
+  const { side, torso, headJoint, longestStep, armLength, confidence, deltaSeconds } = context;
   const { axis } = circle;
   const floorFromChest = torso.rotations.upperChest;
   swivelAxes(side, floorFromChest, axis, axes);
   const limited = findClearRange(circleInCapsule(circle, axes, torso, inTrunk), clear);
   const estimated = angleOf(wantedPole.direction, axes);
-  if (before === null) return poleAt(limited ? nearestWithin(clear, estimated) : estimated, axes, target);
+  const wanted = limited ? nearestWithin(clear, estimated) : estimated;
+  if (before === null) return poleAt(wanted, axes, target);
 
   rotationBetween(rotate(floorFromChest, before.axis, carried), axis, turn);
-  const handStep = distance(subtract(context.wrist, headJoint, fromHead), before.wrist);
-  const longestStep = handStep + elbowSpeed * Math.max(deltaSeconds, 0);
-  const spin = spinOf(carried, circle, armLength, longestStep);
   rotate(turn, rotate(floorFromChest, before.pole, carried), carried);
   const kept = angleOf(carried, axes);
-  // Both ends of the axis of spin are at rest: the nearer one to the elbow.
-  const still = kept + Math.atan(Math.tan(angleOf(spinAxis, axes) - kept));
-  const free = spin > 0 ? wrapAngle(estimated + wrapAngle(still - estimated) * spin) : estimated;
-  const wanted = limited ? nearestWithin(clear, free) : free;
   const inside = limited && nearestWithin(clear, kept) !== kept;
   // The elbow takes the shorter way, or the one that does not lead through the trunk.
   const toGo = limited && !inside ? wanted - kept : wrapAngle(wanted - kept);
   const defined = wantedPole.confidence * smoothstep(handAtShoulder * armLength, handAway * armLength, circle.span);
-  const fraction = Math.max(spin, smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds));
-  const followed = inside ? toGo : toGo * fraction;
+  const fraction = smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds);
   const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * confidence) * Math.max(deltaSeconds, 0);
+  const followed = clamp(inside ? toGo : toGo * fraction, -most, most);
   findReachedRange(add(headJoint, before.elbow, fromHead), circle, longestStep, reached);
   const nearest = kept + wrapAngle(reached.nearest - kept);
-  const angle = nearest + clamp(kept + followed - nearest, -reached.furthest, reached.furthest);
-  return poleAt(clamp(angle, kept - most, kept + most), axes, target);
+  return poleAt(nearest + clamp(kept + followed - nearest, -reached.furthest, reached.furthest), axes, target);
 }
 
 /**

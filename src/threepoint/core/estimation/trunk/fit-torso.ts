@@ -307,7 +307,7 @@ function aimClavicle({ root, rest, wanted }: typeof clavicle, target: Vec3): Mut
 export function placeShoulder(
   side: Side,
   { neck, rotations, clavicles, shoulders }: TorsoPose,
-  { skeleton }: TorsoBones,
+  { skeleton }: Pick<TorsoBones, 'skeleton'>,
   target: Vec3,
   furthestSwing: number,
 ): void {
