@@ -191,13 +191,6 @@ function storeDrawn(transition: ArmTransition, drawn: ArmDirections, wanted: Arm
   copyVec3(wrist, transition.wrist);
 }
 
-/** Stores how far the goals move in this frame. An elbow whose estimate alone moves has no motion of its own. */
-function storeMotion(transition: ArmTransition, { shoulder, upperArm, bones, hand }: ArmGoal): void {
-  transition.wristMotion = distance(hand, transition.wristGoal);
-  const elbowMotion = distance(addScaled(shoulder, upperArm, bones.upper, elbow), transition.elbowGoal);
-  transition.elbowMotion = Math.min(elbowMotion, transition.wristMotion);
-}
-
 /** Returns the path [m] of elbow and wrist in this frame beyond their goals': even acceleration and deceleration. */
 function stepOf(transition: ArmTransition, toGo: number, wanted: ArmGoal, deltaSeconds: number): number {
   const seconds = Math.max(shortestSeconds, wanted.minDuration);
@@ -226,7 +219,10 @@ export function followTransition(
   transition.age += passed;
   retargetArc(upperArm, drawn.upperArm, wanted.upperArm);
   retargetArc(forearm, drawn.forearm, wanted.forearm);
-  storeMotion(transition, wanted);
+  transition.wristMotion = distance(wanted.hand, transition.wristGoal);
+  addScaled(wanted.shoulder, wanted.upperArm, wanted.bones.upper, elbow);
+  // An elbow whose estimate alone moves has no motion of its own.
+  transition.elbowMotion = Math.min(distance(elbow, transition.elbowGoal), transition.wristMotion);
   const toGo = pathLength(transition, drawn, wanted);
   const step = stepOf(transition, toGo, wanted, passed);
   // Minimum fraction per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus
