@@ -1,6 +1,6 @@
 // node scripts/check-language.mjs [PATH …]: lists comments, titles of tests and documents that are not in plain
-// technical English, by file and line. The rules are few and mechanical: they find habits, not style. tests/language.test.ts asserts that
-// none is left.
+// technical English, by file and line. The rules are few and mechanical: they find habits, not style.
+// tests/language.test.ts asserts that none is left.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';

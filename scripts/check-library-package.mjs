@@ -1,6 +1,6 @@
 // Checks what the built packages promise: the links of their documents, the fields of their manifests, and by publint
-// and attw how Node, bundlers and the compiler resolve them. Checks dist-library's source maps and declaration maps, the
-// paths that its licence names, and the sizes of what pages import from it.
+// and attw how Node, bundlers and the compiler resolve them. Checks dist-library's source maps and declaration maps,
+// the paths that its licence names, and the sizes of what pages import from it.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { packages } from './build-packages.mjs';

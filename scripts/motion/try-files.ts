@@ -1,5 +1,5 @@
-// Reads every file of motion of a folder as the page does, and prints a line for each: what was read and assumed, or why
-// it was refused.
+// Reads every file of motion of a folder as the page does, and prints a line for each: what was read and assumed, or
+// why it was refused.
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { reasonOf } from '../../src/threepoint/core/errors/reasons';

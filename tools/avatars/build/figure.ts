@@ -97,7 +97,7 @@ export interface Sink {
   readonly to: (x: number, y: number, z: number) => Point;
   /** The surface inside, for its normals; absent: those of the surface before. */
   readonly onto?: DistanceField;
-  /** Returns the places between an edge's vertex and the one inside, in turn on the way inward, and the normals there. */
+  /** Returns the places between an edge's vertex and the one inside, in order, and the normals there. */
   readonly turned: (x: number, y: number, z: number) => readonly { readonly place: Point; readonly normal: Point }[];
   /** The labels of the wall's strips at a place of the edge, in the same order; the last meets what is inside. */
   readonly strips: (x: number, y: number, z: number) => readonly Label[];

@@ -23,7 +23,7 @@ export interface GarmentStyle {
   readonly shoes: number;
 }
 
-/** The distance of a place past the nearest edge of cloth [m], negative before it, with the labels of rim and inside. */
+/** The distance of a place past the nearest edge of cloth [m], negative before it, with labels of rim and inside. */
 export interface GarmentEdge {
   readonly past: DistanceField;
   readonly rim: Label;

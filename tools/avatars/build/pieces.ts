@@ -64,7 +64,7 @@ export interface Sunk {
   readonly origins: readonly number[];
 }
 
-/** Moves triangles inward and joins them to the edge above by a wall. `over`: where normals are taken from a field [m]. */
+/** Moves triangles inward and joins them to the edge above by a wall. `over`: where a field gives the normals [m]. */
 export function sunk(before: Sunk, sink: Sink, over?: number): Sunk {
   const { positions, indices } = before.surface;
   const labels = [...before.labels];
