@@ -8,10 +8,10 @@ import { root } from './run-command.mjs';
 const otherPages = ['experimenter.html', 'results.html', 'withdraw.html'];
 
 /**
- * Files that the cached page never requests: files for the server, the library's weights for pages without the runtime,
- * and the WebGPU runtime (27 MB, loaded only with ?ep=webgpu).
+ * Files that are not cached: files for the server, onnxruntime-web and its models (14 MB for the paper's network, 27 MB
+ * for WebGPU).
  */
-const unkept = /^(api|studies)\/|(^|\/)\.|\.html$|\.webgpu\.|\.asyncify-|^models\/.*\.bin$|^sw\.js$/;
+const unkept = /^(api|studies)\/|^models\/(?!learned\.bin$)|(^|\/)\.|\.html$|(^|\/)ort\b|^sw\.js$/;
 
 /** Returns the files that these pages of Vite's manifest load, statically or dynamically. */
 function reached(manifest, pages) {

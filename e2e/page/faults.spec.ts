@@ -190,7 +190,7 @@ freshTest(
       const { estimator, provider, activity, loading } = await probe(page);
       expect({ estimator, provider, activity }).toEqual({
         estimator: 'learned',
-        provider: 'wasm',
+        provider: 'plain',
         activity: 'desktop',
       });
       const start = performance.now();

@@ -120,7 +120,7 @@ test('archery is played in VR without network or host after one visit to a folde
   await page.context().setOffline(true);
   await visit(page, 'emulate&play=archery&seed=7&panel=off&quality=low');
   const { estimator, provider, notices } = await probe(page);
-  expect({ estimator, provider, notices }).toEqual({ estimator: 'learned', provider: 'wasm', notices: [] });
+  expect({ estimator, provider, notices }).toEqual({ estimator: 'learned', provider: 'plain', notices: [] });
   const headset = await emulatedHeadset(page);
   await enterVr(page);
   await holdAt<ArcheryProbe>(page, { score: 5 });
@@ -143,7 +143,7 @@ test('nothing is kept of a server, and a study is served by it as ever @full', a
   await isKept(page);
   const stored = await storedPaths(page);
   expect(stored).toContain('/index.html');
-  expect(stored.filter((path) => /^\/(api|studies|relay)|experimenter|results|webgpu|asyncify/.test(path))).toEqual([]);
+  expect(stored.filter((path) => /^\/(api|studies|relay)|experimenter|results|\/ort|\.onnx/.test(path))).toEqual([]);
 
   const from = async (address: string) => (await page.goto(address))?.fromServiceWorker();
   expect(await from('?quality=low')).toBe(true);
@@ -160,7 +160,7 @@ test('nothing is kept of a server, and a study is served by it as ever @full', a
   };
   expect(await asksFor('?quality=low'), 'a visit').toEqual([]);
   expect(await asksFor('?quality=low&study=paper'), 'a study').toEqual(
-    expect.arrayContaining(['/avatars/mannequin.vrm', '/models/learned.json', '/models/learned.onnx']),
+    expect.arrayContaining(['/avatars/mannequin.vrm', '/models/learned.bin']),
   );
   await page.context().close();
   await served.close();
@@ -191,7 +191,7 @@ test('a page in use keeps its files; the next visit has the newer version and co
   await visit(page);
   await expect(page).toHaveTitle('newer');
   // Another version than the kept one: all of it comes from its host.
-  expect(again.asked).toEqual(expect.arrayContaining(['/avatars/woman.vrm', '/models/learned.onnx']));
+  expect(again.asked).toEqual(expect.arrayContaining(['/avatars/woman.vrm', '/models/learned.bin']));
 
   // It is kept beside the older one, and takes its place when no window has that any more.
   await newerCopyWaits(page);
@@ -282,8 +282,8 @@ test('a browser that can store too little shows the page as ever and keeps no ha
 });
 
 test('files that are not those of one version are not kept @full', async ({ browser, folder }) => {
-  const contract = join(folder, 'models/paper.json');
-  writeFileSync(contract, readFileSync(contract, 'utf8').replace('{', '{ '));
+  const manifest = join(folder, 'manifest.webmanifest');
+  writeFileSync(manifest, readFileSync(manifest, 'utf8').replace('{', '{ '));
   const served = await serveStatic(folder, '/threepoint/');
   const page = await newPage(browser, served.address, true);
   await visit(page);

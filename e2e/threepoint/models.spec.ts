@@ -11,7 +11,7 @@ const firstBody = (page: Page): Promise<number> =>
 
 test('a model that is missing: IK takes over and the page says so', async ({ page, complaints }) => {
   complaints.allow(/learned/, /404/);
-  await page.route('**/models/learned*.onnx', (route) => route.fulfill({ status: 404, body: 'Not found.' }));
+  await page.route('**/models/learned.bin', (route) => route.fulfill({ status: 404, body: 'Not found.' }));
   const headset = await openWithHeadset(page, 'estimator=learned');
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
   await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
@@ -20,8 +20,11 @@ test('a model that is missing: IK takes over and the page says so', async ({ pag
   await expect.poll(async () => Math.abs((await joint(page, 'head'))[0] - 0.3)).toBeLessThan(0.05);
 });
 
-test('without WebAssembly IK takes over and the page says so', async ({ page, complaints }) => {
-  complaints.allow(/wasm/i, /404/, /learned|paper/);
+test('without WebAssembly the learned network runs, and IK takes the place of the paper’s', async ({
+  page,
+  complaints,
+}) => {
+  complaints.allow(/wasm/i, /404/, /paper/);
   let answer: () => void = () => undefined;
   const answered = new Promise<void>((resolve) => {
     answer = resolve;
@@ -31,7 +34,7 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
     await route.fulfill({ status: 404, body: 'Not found.' });
   });
   // The page calls itself ready once it knows of WASM; its body must not wait so long.
-  const ready = openWithHeadset(page, 'estimator=learned');
+  const ready = openWithHeadset(page, 'estimator=paper');
   await page.waitForFunction(() => window.threepoint?.probe().loading.firstBody !== undefined);
   answer();
   await ready;
@@ -40,6 +43,10 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
   });
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
   await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
+
+  await openWithHeadset(page, 'estimator=learned');
+  const { estimator, provider } = await probe(page);
+  expect({ estimator, provider }).toEqual({ estimator: 'learned', provider: 'plain' });
 });
 
 test('without the worker that runs networks IK takes over and the page says so @full', async ({ page, complaints }) => {

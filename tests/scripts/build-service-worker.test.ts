@@ -13,8 +13,9 @@ const built = {
   'studies/paper.json': '{}',
   '.source-hash': 'hash',
   'favicon.svg': '<svg/>',
-  'models/learned.onnx': 'weights',
-  'models/learned.bin': 'weights for pages without a runtime',
+  'models/learned.bin': 'weights',
+  'models/learned.json': 'a contract for the runtime',
+  'models/learned.onnx': 'weights for the runtime',
   'assets/main-1.js': 'main',
   'assets/archery-2.js': 'later',
   'assets/shared-3.js': 'of two pages',
@@ -22,7 +23,7 @@ const built = {
   'assets/withdraw-9.js': 'a code and a receipt',
   'assets/worker-5.js': 'in no manifest',
   'assets/ort.webgpu.bundle.min-6.js': 'webgpu',
-  'assets/ort-wasm-simd-threaded.asyncify-7.wasm': 'webgpu',
+  'assets/ort-wasm-simd-threaded-7.wasm': 'the runtime',
 };
 const manifest = {
   'index.html': { file: 'assets/main-1.js', imports: ['_shared'], dynamicImports: ['archery'] },
@@ -33,7 +34,7 @@ const manifest = {
   'withdraw.html': { file: 'assets/withdraw-9.js', imports: ['_shared'] },
 };
 
-test('the kept files are what the page may load, without server, other pages and WebGPU', () => {
+test('the kept files are what the page may load, without server, other pages and onnxruntime-web', () => {
   expect(keptFiles(directoryWith(built), manifest).map(({ url }) => url)).toEqual([
     'assets/archery-2.js',
     'assets/main-1.js',
@@ -41,16 +42,16 @@ test('the kept files are what the page may load, without server, other pages and
     'assets/worker-5.js',
     'favicon.svg',
     'index.html',
-    'models/learned.onnx',
+    'models/learned.bin',
   ]);
 });
 
 test('each is known by its content, not by its name', () => {
   const before = keptFiles(directoryWith(built), manifest);
-  const after = keptFiles(directoryWith({ ...built, 'models/learned.onnx': 'better weights' }), manifest);
+  const after = keptFiles(directoryWith({ ...built, 'models/learned.bin': 'better weights' }), manifest);
   const changed = after.filter((file, i) => file.integrity !== before[i]?.integrity);
-  expect(changed.map(({ url }) => url)).toEqual(['models/learned.onnx']);
-  expect(changed[0]?.revision).not.toBe(before.find(({ url }) => url === 'models/learned.onnx')?.revision);
+  expect(changed.map(({ url }) => url)).toEqual(['models/learned.bin']);
+  expect(changed[0]?.revision).not.toBe(before.find(({ url }) => url === 'models/learned.bin')?.revision);
   // A name that contains a hash of the content needs no revision.
   expect(after.find(({ url }) => url === 'assets/main-1.js')?.revision).toBeNull();
 });

@@ -75,7 +75,7 @@ async function createTracker(
     deviceBody: true,
     estimator: 'ik',
     networks: createNetworkLoader({
-      provider: 'wasm',
+      provider: null,
       notices: { show: (_, text) => onProblem(text) },
       loading: { report: () => undefined },
     }),

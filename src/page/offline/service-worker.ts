@@ -42,10 +42,10 @@ self.addEventListener('activate', (event) => {
 /** The time after which a host that does not answer counts as offline [ms]. */
 const hostTimeoutMs = 4000;
 
-/** Returns whether a page needs the host's files: a study, or WebGPU, whose files are too large for the cache. */
+/** Returns whether a page needs the host's files: a study, or onnxruntime-web, which is too large for the cache. */
 function needsHost(address: string): boolean {
   const { searchParams } = new URL(address);
-  return searchParams.has('study') || searchParams.get('ep') === 'webgpu';
+  return searchParams.has('study') || searchParams.has('ep');
 }
 
 /** Returns whether an address is the page: the folder or its index.html, with any query. */

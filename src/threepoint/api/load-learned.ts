@@ -12,24 +12,31 @@ export interface LoadLearnedOptions {
   readonly modelUrl?: string | URL;
   /** Called with the fraction [0, 1] of the weights that has loaded. */
   readonly onProgress?: (fraction: number) => void;
+  /**
+   * Creates a worker with the module threepoint/onnx-worker. The network runs there after the frame, and its results
+   * are one frame late. Default: it runs within the frame.
+   */
+  readonly createWorker?: () => Worker;
 }
 
 /**
- * Loads the learned network without onnxruntime-web: 122 kB with its weights, evaluated within the frame. Rejects with
- * an Error that names the file and its fault.
+ * Loads the learned network without onnxruntime-web: 122 kB with its weights. Rejects with an Error that names the file
+ * and its fault.
  *
  * @example
  * const body = new Body({ networks: () => loadLearned({ onProgress: (fraction) => bar.set(fraction) }) });
  */
 export async function loadLearned(options: LoadLearnedOptions = {}): Promise<PoseRegressor> {
-  assertOptions('loadLearned', options, ['modelUrl', 'onProgress']);
-  const { modelUrl, onProgress } = options;
+  assertOptions('loadLearned', options, ['modelUrl', 'onProgress', 'createWorker']);
+  const { modelUrl, onProgress, createWorker } = options;
   if (modelUrl !== undefined) {
     const { loadPlainRegressor } = await import('../onnx/load-plain-regressor');
-    return loadPlainRegressor(String(modelUrl), onProgress);
+    return loadPlainRegressor(String(modelUrl), onProgress, createWorker);
   }
   const { contract, weights } = await readBundledNetwork(onProgress);
-  return createPlainRegressor(contract, weights);
+  if (!createWorker) return createPlainRegressor(contract, weights);
+  const { createPlainWorkerRegressor } = await import('../onnx/worker-session');
+  return createPlainWorkerRegressor(contract, weights, createWorker);
 }
 
 /** Loads the learned network without a runtime; rejects for the paper's network. */

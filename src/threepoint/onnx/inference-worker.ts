@@ -1,14 +1,20 @@
 import { reasonOf } from '../core/errors/reasons';
+import { createPlainRegressor } from '../core/estimation/networks/learned-network';
 import { createSession, type InferenceSession } from './session';
 import type { WorkerRequest, WorkerResponse } from './worker-session';
 
-let session: InferenceSession | null = null;
+let session: Pick<InferenceSession, 'run'> | null = null;
 
 async function answer(question: WorkerRequest): Promise<WorkerResponse> {
   const { id } = question;
+  if ('weights' in question) {
+    session = createPlainRegressor(question.contract, question.weights);
+    return { id, inputNames: [], outputNames: [] };
+  }
   if ('model' in question) {
-    session = await createSession(question.model, question.tensors, 'wasm', { wasmPaths: question.wasmPaths });
-    return { id, inputNames: session.inputNames, outputNames: session.outputNames };
+    const opened = await createSession(question.model, question.tensors, 'wasm', { wasmPaths: question.wasmPaths });
+    session = opened;
+    return { id, inputNames: opened.inputNames, outputNames: opened.outputNames };
   }
   if (!session) throw new Error('no model is open');
   return { id, numbers: await session.run(question.features) };

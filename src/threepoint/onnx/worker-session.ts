@@ -1,15 +1,14 @@
 import { reasonOf } from '../core/errors/reasons';
+import type { ModelContract, PoseRegressor } from '../core/estimation/networks/pose-regressor';
 import type { InferenceSession, ModelTensors, WasmPaths } from './session';
 
+/** Weights that need no runtime, or a model of the runtime. */
+type Model =
+  | { readonly contract: ModelContract; readonly weights: Uint8Array }
+  | { readonly model: Uint8Array; readonly tensors: ModelTensors; readonly wasmPaths: WasmPaths | undefined };
+
 /** A request of the page to the worker that runs a model: to open it, or to run it. */
-export type WorkerRequest =
-  | {
-      readonly id: number;
-      readonly model: Uint8Array;
-      readonly tensors: ModelTensors;
-      readonly wasmPaths: WasmPaths | undefined;
-    }
-  | { readonly id: number; readonly features: Float32Array };
+export type WorkerRequest = { readonly id: number } & (Model | { readonly features: Float32Array });
 
 /** The answer to the request with this number. */
 export type WorkerResponse =
@@ -37,16 +36,34 @@ function namesOf(answer: WorkerResponse): Pick<InferenceSession, 'inputNames' | 
   return answer;
 }
 
-/**
- * Opens a model in its own worker: a frame only sends the request, and the result arrives between frames. Rejects if
- * the worker does not start or cannot open the model. After a crash or a timeout of the worker every run rejects.
- */
+/** A model that is open in a worker. */
+type WorkerSession = Omit<InferenceSession, 'provider' | 'lost'>;
+
+/** Opens a model of the runtime in its own worker, in WebAssembly. */
 export async function createWorkerSession(
   model: Uint8Array,
   tensors: ModelTensors,
   createWorker: () => Worker,
   wasmPaths?: WasmPaths,
 ): Promise<InferenceSession> {
+  return { provider: 'wasm', ...(await openInWorker({ model, tensors, wasmPaths }, createWorker)) };
+}
+
+/** Runs the learned network in its own worker, without a runtime. */
+export async function createPlainWorkerRegressor(
+  contract: ModelContract,
+  weights: Uint8Array,
+  createWorker: () => Worker,
+): Promise<PoseRegressor> {
+  const { run, release } = await openInWorker({ contract, weights }, createWorker);
+  return { contract, provider: 'plain', run, dispose: release };
+}
+
+/**
+ * Opens a model in its own worker: a frame only sends the request, and the result arrives between frames. Rejects if
+ * the worker does not start or cannot open the model. After a crash or a timeout of the worker every run rejects.
+ */
+async function openInWorker(model: Model, createWorker: () => Worker): Promise<WorkerSession> {
   const worker = createWorker();
   const waiting = new Map<number, Waiting>();
   let broken: Error | null = null;
@@ -85,14 +102,13 @@ export async function createWorkerSession(
   worker.addEventListener('error', ({ message }) => breakDown(message || 'the worker for inference did not start'));
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
-  const opening = send({ id: nextId++, model, tensors, wasmPaths }).then(namesOf);
+  const opening = send({ id: nextId++, ...model }).then(namesOf);
   const { inputNames, outputNames } = await opening.catch((error: unknown) => {
     breakDown(reasonOf(error));
     throw error;
   });
   opened = true;
   return {
-    provider: 'wasm',
     inputNames,
     outputNames,
     run: (features) => send({ id: nextId++, features }).then(numbersOf),

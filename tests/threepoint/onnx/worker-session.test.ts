@@ -1,4 +1,5 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { loadLearned } from '../../../src/threepoint/api/load-learned';
 import { startRegressor } from '../../../src/threepoint/onnx/load-regressor';
 import type { WorkerRequest, WorkerResponse } from '../../../src/threepoint/onnx/worker-session';
 import { readShipped } from '../core/estimation/shipped-models';
@@ -67,4 +68,20 @@ describe('a worker for inference is not left running', () => {
     expect(worker.lives).toBe(false);
     expect(vi.getTimerCount()).toBe(0);
   });
+});
+
+test('the learned network runs in a worker without the runtime, and its release ends it', async () => {
+  const numbers = new Float32Array(18).fill(0.01);
+  const opened: string[] = [];
+  const worker = new ToldWorker((question) => {
+    if (!('weights' in question)) return { numbers };
+    opened.push(question.contract.name);
+    return { inputNames: [], outputNames: [] };
+  });
+  const regressor = await loadLearned({ createWorker: () => worker as unknown as Worker });
+  expect([regressor.provider, regressor.runNow, opened]).toEqual(['plain', undefined, ['learned']]);
+  expect(await regressor.run(new Float32Array(176))).toEqual(numbers);
+  await regressor.dispose();
+  expect(worker.lives).toBe(false);
+  await expect(regressor.run(new Float32Array(176))).rejects.toThrow('already released');
 });

@@ -42,8 +42,8 @@ const entries = {
   /** Whether the controls are open; null: as they were left. */
   panel: open(onOff),
   estimator: open(oneOf(estimatorNames)),
-  /** The execution provider of the networks. */
-  ep: v.optional(oneOf(['wasm', 'webgpu']), 'wasm'),
+  /** The provider of onnxruntime-web in which networks run; null: only those that need it, in WebAssembly. */
+  ep: open(oneOf(['wasm', 'webgpu'])),
   avatar: open(addressOf('the address of a VRM or a humanoid GLB')),
   quality: open(oneOf(['high', 'low'])),
   replay: open(addressOf('the address of a recording')),

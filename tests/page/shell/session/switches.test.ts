@@ -11,7 +11,7 @@ describe('the address of the page', () => {
         actor: true,
         panel: null,
         estimator: null,
-        ep: 'wasm',
+        ep: null,
         avatar: null,
         quality: null,
         replay: null,
@@ -65,7 +65,7 @@ describe('the address of the page', () => {
 
   test('a value that no switch takes is reported and counts as not given; the others count', () => {
     const { switches, complaints } = readSwitches('?estimator=magic&quality=low&ep=gpu');
-    expect(switches).toMatchObject({ estimator: null, quality: 'low', ep: 'wasm' });
+    expect(switches).toMatchObject({ estimator: null, quality: 'low', ep: null });
     expect(complaints).toHaveLength(2);
     expect(complaints.join(' ')).toContain('estimator=magic');
     expect(complaints.join(' ')).toContain('ep=gpu');
