@@ -96,7 +96,7 @@ export class GripControl {
     const distinct = <Value>(values: readonly Value[]): readonly Value[] => [...new Set(values)];
     return {
       device: distinct(corrected.map(({ device }) => controllerName(device))).join(', '),
-      hands: this.#hands,
+      hands: this.#chosen,
       rows: gripSteps.map((step) => {
         const steps = offsets.map((offset) => stepsOf(offset, step));
         return {
@@ -132,13 +132,21 @@ export class GripControl {
     return this.#parts.body.userCalibration.gripOffsets ?? {};
   }
 
-  #corrected() {
+  get #devices() {
     const { headset, store } = this.#parts;
-    const devices = headset.heldDevices ?? store.preferences.gripDevices ?? {};
-    const chosen = sides.filter((side) => this.#hands === 'both' || this.#hands === side);
-    return chosen.flatMap((side) => {
+    return headset.heldDevices ?? store.preferences.gripDevices ?? {};
+  }
+
+  /** The chosen hands; both, while the chosen one holds no controller. */
+  get #chosen(): GripHands {
+    return this.#hands === 'both' || this.#devices[this.#hands] === undefined ? 'both' : this.#hands;
+  }
+
+  #corrected() {
+    const [devices, chosen] = [this.#devices, this.#chosen];
+    return sides.flatMap((side) => {
       const device = devices[side];
-      return device === undefined ? [] : [{ side, device }];
+      return device === undefined || (chosen !== 'both' && chosen !== side) ? [] : [{ side, device }];
     });
   }
 

@@ -69,7 +69,9 @@ test('each hand corrects the device that it holds', () => {
   press('right', 'pitch on');
   expect(Object.keys(body.userCalibration.gripOffsets!)).toEqual(['logitech-mx-ink']);
   headset.heldDevices = { left: 'meta-quest-touch-plus' };
-  expect(grip.state, 'the right hand holds none').toBeNull();
+  expect(grip.state, 'the right hand holds none').toMatchObject({ hands: 'both', device: 'Meta Quest Touch Plus' });
+  headset.heldDevices = {};
+  expect(grip.state).toBeNull();
 });
 
 test('a step ends at the largest correction, which no body refuses', () => {

@@ -1,5 +1,16 @@
 import { type Calibration, createEstimator, type TrackingFrame } from 'threepoint/core';
-import { distance, fromAxisAngle, makeTransform, right, rotate, subtract, up, vec3 } from 'threepoint/math';
+import {
+  distance,
+  fromAxisAngle,
+  lerp,
+  makeTransform,
+  right,
+  rotate,
+  smoothstep,
+  subtract,
+  up,
+  vec3,
+} from 'threepoint/math';
 import { expect, test } from 'vitest';
 import { createRandom } from '../../../../src/threepoint/core/math/random';
 import { cases } from '../../../nightly';
@@ -81,4 +92,43 @@ test.each(['ik', 'learned'] as const)('an elbow follows a hand that passes its s
   }
   expect(frames).toBeGreaterThan(100);
   expect(leaps).toBeLessThan((cases(24) * seconds * rate) / 1000);
+});
+
+/** A person who walks and turns without a right hand, which returns after 2 s and moves on far from its shoulder. */
+function handThatReturns(motion: number): { readonly armSpan: number; readonly at: (time: number) => TrackingFrame } {
+  const random = createRandom(motion);
+  const about = (mean: number, spread: number) => mean + spread * (2 * random() - 1);
+  const near = (x: number, y: number, z: number) => vec3(about(x, 0.05), about(y, 0.05), about(z, 0.05));
+  const [from, to] = [near(0.2, 1.7, -0.85), near(-0.1, 1.3, -0.75)];
+  const [turn, seconds, pitch] = [about(2.8, 0.3), about(0.5, 0.15), about(0, 0.3)];
+  return {
+    armSpan: about(1.55, 0.15),
+    at: (time) => {
+      const walked = smoothstep(1, 3, time);
+      const hand = lerp(from, to, smoothstep(3, 3 + seconds, time));
+      return {
+        time,
+        head: tracked(vec3(0.2 * walked, 1.6, -1.2 * walked), fromAxisAngle(up, turn * walked)),
+        leftHand: tracked(vec3(-0.25, 0.95, -0.1), fromAxisAngle(right, -1)),
+        rightHand: time > 1 && time < 3 ? null : tracked(hand, fromEulerYxz(vec3(pitch, 0, 0))),
+      };
+    },
+  };
+}
+
+test('a shoulder does not yield to a hand that returns far from it', () => {
+  const network = openPlainModel();
+  for (let motion = 1; motion <= 10; motion++) {
+    const { armSpan, at } = handThatReturns(motion);
+    const calibration: Calibration = { eyeHeight: 1.6, armSpan };
+    const estimator = createEstimator('learned', calibration, network);
+    let before = vec3(0, 0, 0);
+    for (let i = 0; i < 5 * rate; i++) {
+      const frame = at(i / rate);
+      const now = { ...jointsOf(poseOf(estimator, frame), calibration).rightUpperArm.position };
+      // From here on the hand is still, and the arm moves to it.
+      if (frame.time >= 3.65) expect(distance(now, before), `motion ${motion}, frame ${i}`).toBeLessThan(mostForced);
+      before = now;
+    }
+  }
 });

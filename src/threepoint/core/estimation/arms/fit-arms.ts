@@ -263,16 +263,16 @@ function bendArm(
 }
 
 /**
- * Lets the shoulder yield to a hand next to it, which turns the arm's line over within a frame. An elbow whose circle
- * is further than `longestStep` [m] from its former place moves about the wrist as far as it may, and the clavicle
- * swings to the upper arm's end. A hand closer to the shoulder than the bones fold is reached in the same way. Beyond
- * the clavicle's range the bones move the elbow.
+ * Lets the shoulder yield to a hand next to it, closer than the upper arm is long, which turns the arm's line over
+ * within a frame. An elbow whose circle is further than `longestStep` [m] from its former place moves about the wrist
+ * as far as it may, and the clavicle swings to the upper arm's end. A hand closer to the shoulder than the bones fold
+ * is reached in the same way. Beyond the clavicle's range the bones move the elbow.
  */
 function letShoulderYield(side: Side, elbowBefore: Vec3, longestStep: number, torso: TorsoPose, bones: ArmBones): void {
   const { wrist, circle, elbow, pole } = bent;
   const shoulder = torso.shoulders[side];
   const span = distance(shoulder, wrist);
-  if (span > circle.span || (span === circle.span && distance(elbow, elbowBefore) <= longestStep)) return;
+  if (span > bones.upper || (span === circle.span && distance(elbow, elbowBefore) <= longestStep)) return;
   const { upper, lower } = bones;
   const far = length(subtract(elbowBefore, wrist, fromWrist));
   // The places of an elbow within the step are a cap of the sphere about the wrist, around its former direction.
