@@ -190,7 +190,7 @@ test('the overlay names the stages of a frame, the estimator and where it runs @
   for (const stage of ['tracking', 'features', 'inference', 'kinematics', 'skinning', 'render']) {
     await expect(overlay.getByRole('rowheader', { name: stage })).toBeVisible();
   }
-  await expect(overlay).toContainText(/wasm/i);
+  await expect(overlay).toContainText(/plain/i);
   await expect(overlay).toContainText(/missed at/);
 });
 

@@ -67,8 +67,11 @@ type HeldDevices = NonNullable<Preferences['gripDevices']>;
 /** Returns the controllers that hands hold, by the names of their offsets. */
 const heldDevices = (sources: Iterable<XRInputSource>): HeldDevices =>
   Object.fromEntries(
-    [...sources].flatMap(({ hand, gripSpace, handedness, profiles }) =>
-      gripSpace && !hand && handedness !== 'none' ? [[handedness, gripDevice(profiles)]] : [],
+    [...sources].flatMap(({ hand, gripSpace, handedness, profiles, targetRayMode }) =>
+      // A pinch that aims by the eyes has a grip, too, while it lasts.
+      gripSpace && !hand && handedness !== 'none' && targetRayMode === 'tracked-pointer'
+        ? [[handedness, gripDevice(profiles)]]
+        : [],
     ),
   );
 
