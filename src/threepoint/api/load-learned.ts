@@ -29,14 +29,14 @@ export interface LoadLearnedOptions {
 export async function loadLearned(options: LoadLearnedOptions = {}): Promise<PoseRegressor> {
   assertOptions('loadLearned', options, ['modelUrl', 'onProgress', 'createWorker']);
   const { modelUrl, onProgress, createWorker } = options;
-  if (modelUrl !== undefined) {
-    const { loadPlainRegressor } = await import('../onnx/load-plain-regressor');
-    return loadPlainRegressor(String(modelUrl), onProgress, createWorker);
+  if (modelUrl === undefined && !createWorker) {
+    const { contract, weights } = await readBundledNetwork(onProgress);
+    return createPlainRegressor(contract, weights);
   }
-  const { contract, weights } = await readBundledNetwork(onProgress);
-  if (!createWorker) return createPlainRegressor(contract, weights);
-  const { createPlainWorkerRegressor } = await import('../onnx/worker-session');
-  return createPlainWorkerRegressor(contract, weights, createWorker);
+  const { fetchPlainNetwork, startPlainRegressor } = await import('../onnx/load-plain-regressor');
+  const network =
+    modelUrl === undefined ? readBundledNetwork(onProgress) : fetchPlainNetwork(String(modelUrl), onProgress);
+  return startPlainRegressor(await network, createWorker);
 }
 
 /** Loads the learned network without a runtime; rejects for the paper's network. */
