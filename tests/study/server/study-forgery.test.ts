@@ -120,7 +120,7 @@ describe('an export', () => {
     return rows.map((row) => Object.fromEntries(heads.map((head, column) => [head, row[column]])));
   }
 
-  test('says in each row with whose token it came, whatever the record claims', { tags: ['full'] }, async () => {
+  test('states in each row the token that it came with, whatever the record claims', { tags: ['full'] }, async () => {
     const server = await participant();
     const { ask, records, send } = server;
     const [, ...others] = records;

@@ -64,16 +64,13 @@ interface Session {
 
 type HeldDevices = NonNullable<Preferences['gripDevices']>;
 
+/** Returns whether a hand holds this controller. A pinch that aims by the eyes has a grip, too, while it lasts. */
+const isHeld = ({ hand, gripSpace, handedness, targetRayMode }: XRInputSource): boolean =>
+  Boolean(gripSpace) && !hand && handedness !== 'none' && targetRayMode === 'tracked-pointer';
+
 /** Returns the controllers that hands hold, by the names of their offsets. */
 const heldDevices = (sources: Iterable<XRInputSource>): HeldDevices =>
-  Object.fromEntries(
-    [...sources].flatMap(({ hand, gripSpace, handedness, profiles, targetRayMode }) =>
-      // A pinch that aims by the eyes has a grip, too, while it lasts.
-      gripSpace && !hand && handedness !== 'none' && targetRayMode === 'tracked-pointer'
-        ? [[handedness, gripDevice(profiles)]]
-        : [],
-    ),
-  );
+  Object.fromEntries([...sources].filter(isHeld).map(({ handedness, profiles }) => [handedness, gripDevice(profiles)]));
 
 /** The headset that is worn, real or emulated, and the session in it. */
 export class Headset {
@@ -323,7 +320,9 @@ export class Headset {
       this.#listener?.visibilityChanged();
     });
     xr.addEventListener('frameratechange', () => this.#listener?.rateChanged());
-    xr.addEventListener('inputsourceschange', () => this.#rememberGrip());
+    xr.addEventListener('inputsourceschange', ({ added, removed }) => {
+      if ([...added, ...removed].some(isHeld)) this.#rememberGrip();
+    });
     this.#rememberGrip();
     if (!this.#context.settings.actor) this.#emulator?.release();
   }
